@@ -135,11 +135,9 @@ std::string host_cpu() {
   return "unknown";
 }
 
-/// Content hash of all kernel files; files in CLPV_KERNEL_DIR replace embedded ones.
 std::string kernel_hash() {
   Fingerprint fingerprint;
-  for (const auto& [name, text] : detail::embedded_kernel_files())
-    fingerprint.add(name).add(kernel_file(name));
+  add_kernels(fingerprint);
   return fingerprint.hex();
 }
 

@@ -24,10 +24,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kFinishedRows = "finished rows are in the file of --log, if given";
 
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
 /// A case that is set up, and its measurements so far.
 struct CaseRun {
   Row row;

@@ -160,7 +160,7 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds,
   const Clock::time_point started = Clock::now();
   state.render(camera, seconds, size);
   Image image = state.image(view);
-  state.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - started).count();
+  state.frame_ms = ms_since(started);
   return image;
 }
 

@@ -15,14 +15,55 @@
 #include <string>
 #include <vector>
 
-#include "bake/probe_formats.hpp"
+#include "basis/matrix.hpp"
 #include "device/session.hpp"
 #include "options/render_options.hpp"
 #include "pathtracer/point_tracer.hpp"
+#include "scene/input.hpp"
 #include "scene/scene.hpp"
 #include "support/cache_folder.hpp"
 
 namespace clpv::bake {
+
+// Formats of light probes: a few numbers per channel for the light that arrives at a point, and the
+// irradiance that an engine makes of them (docs/bake.md, 'Formats'; probe_formats.cpp).
+
+using pathtracer::Moments;
+
+/// A format. Coefficients are red, green, blue of each number.
+struct ProbeFormat {
+  std::string name;
+  std::size_t size = 0;  ///< numbers per channel
+  std::string meaning;   ///< meaning of the numbers, with their unit
+  Moments moments;       ///< integrals of arriving radiance that encode() takes
+  /// Null: the integrals are the coefficients.
+  std::function<std::vector<glm::dvec3>(std::span<const glm::dvec3> integrals)> encode = {};
+  /// Irradiance [W/m^2] of a surface with a unit normal, negative where the format undershoots.
+  std::function<glm::dvec3(std::span<const glm::dvec3> c, const glm::dvec3& normal)> irradiance;
+  std::vector<glm::dvec3> creases = {};  ///< normals of planes where `moments` jump
+
+  std::vector<glm::dvec3> encoded(std::span<const glm::dvec3> integrals) const {
+    return encode ? encode(integrals) : std::vector<glm::dvec3>(integrals.begin(), integrals.end());
+  }
+};
+
+/// Names of all formats, in ascending size.
+std::vector<std::string> probe_format_names();
+/// Throws Error(usage) for an unknown name; the message lists all.
+ProbeFormat probe_format(const std::string& name);
+
+/// 128 unit normals in equal parts of the octants, and their solid angles [sr].
+struct NormalSet {
+  std::vector<glm::dvec3> normals;
+  std::vector<double> weights;
+};
+const NormalSet& probe_normals();
+
+/// Share of probe_normals() whose irradiance has a negative luminance.
+double negative_share(const ProbeFormat& format, std::span<const glm::dvec3> c);
+
+/// Count x 9: integrals of the nine harmonics in the order of SphericalHarmonics.
+Matrix of_harmonics(const ProbeFormat& format);
 
 // Where probes have their light from: swept volumes, or path tracing.
 
@@ -190,5 +231,40 @@ std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
                     const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate,
                     int threads = 0);
+
+// Errors of baked probes against path tracing, on surfaces and in the air (probe_check.cpp).
+
+/// Random places in a grid that are not inside walls, and their true irradiance [W/m^2].
+struct CheckPoints {
+  std::vector<SurfacePoint> points;
+  std::vector<glm::dvec3> truth;
+};
+
+/// `count` points of surfaces that are seen from such places; or `count` such places with six
+/// normals each, along the axes of a random rotation. `direct`: with light of the scene's lights.
+/// Fewer where most of the grid is inside walls.
+CheckPoints surface_points(pathtracer::PointTracer& tracer, const ProbeGrid& grid,
+                           std::size_t count, bool direct, double& noise);
+CheckPoints air_points(pathtracer::PointTracer& tracer, const ProbeGrid& grid, std::size_t count,
+                       bool direct, double& noise);
+
+/// The points of a file.
+CheckPoints given_points(pathtracer::PointTracer& tracer, std::vector<SurfacePoint> points,
+                         bool direct, double& noise);
+
+/// Errors over all points and channels.
+struct ProbeError {
+  double nrmse = 0;     ///< root mean square error over that of the truth; NaN in the dark
+  double energy = 0;    ///< sum over that of the truth; NaN in the dark
+  double negative = 0;  ///< share of points with a negative channel, which count as 0
+  double mean = 0;      ///< irradiance [W/m^2], over all points and channels
+};
+
+/// `lift`: look-ups lie so many spacings along the normal.
+ProbeError error_of(const ProbeFormat& format, const BakedProbes& baked, const CheckPoints& points,
+                    double lift);
+
+/// The lift on surfaces, three.js's.
+inline constexpr double kSurfaceLift = 0.5;
 
 }  // namespace clpv::bake

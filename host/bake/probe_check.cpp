@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "bake/probe_check.hpp"
-
 #include <cmath>
 
+#include "bake/bake.hpp"
 #include "basis/sampling.hpp"
 #include "support/interrupt.hpp"
 

@@ -8,8 +8,6 @@
 //   sh3-windowed      Sloan, 'Stupid Spherical Harmonics (SH) Tricks' (GDC 2008)
 //   zh3               Roughton, Sloan, Silvennoinen, Iwanicki and Shirley, 'ZH3: Quadratic Zonal
 //                     Harmonics' (I3D 2024)
-#include "bake/probe_formats.hpp"
-
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -18,6 +16,7 @@
 #include <memory>
 #include <numbers>
 
+#include "bake/bake.hpp"
 #include "basis/bases.hpp"
 #include "basis/basis.hpp"
 #include "basis/clamped_cosine.hpp"

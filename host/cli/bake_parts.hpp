@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bake/bake.hpp"
-#include "bake/probe_check.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
 #include "support/named_enum.hpp"

@@ -21,6 +21,7 @@
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
+#include "support/progress.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
@@ -101,8 +102,7 @@ void run(const Options& options, Shared& shared) {
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const double seconds = ms_since(started) / 1000;
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     log_warning("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
                 traced.samples, options.tracing.values.noise);

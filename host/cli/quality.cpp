@@ -100,10 +100,6 @@ std::vector<Group> groups_of(const Options& options, const std::vector<Subject>&
   return groups;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Measures the cell of that group and camera; creates the group's frame if it does not exist yet.
 QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Group& group,
                      std::size_t camera, const Options& options) {
@@ -113,7 +109,7 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
     double setup_s = 0;
     if (!frame) {
       frame = std::make_unique<Frame>(session, group.subject.scene, group.options);
-      setup_s = seconds_since(started);
+      setup_s = ms_since(started) / 1000;
     }
     cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera],
                    options.view, options.frames);
@@ -123,7 +119,7 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
     if (error.code() != ExitCode::usage && error.code() != ExitCode::run_time) throw;
     cell.rejected = error.what();
   }
-  cell.measured_s = seconds_since(started) - cell.setup_s;
+  cell.measured_s = ms_since(started) / 1000 - cell.setup_s;
   cell.scene = group.subject.scene.name;
   cell.camera = group.subject.cameras[camera].name;
   return cell;

@@ -56,13 +56,13 @@ class FrameStats {
   void begin_startup() { mark_ = Clock::now(); }
   /// The device is open, programs are built, the scene is uploaded.
   void end_startup() {
-    startup_ms_ = since_mark();
+    startup_ms_ = ms_since(mark_);
     mark_ = Clock::now();
   }
   /// The first launches compile kernels for their work-group sizes.
   void end_first_frame(Session& session) {
     session.queue().finish();
-    first_frame_ms_ = since_mark();
+    first_frame_ms_ = ms_since(mark_);
   }
   /// Sets the times of the timed frames, of one camera. The statistics report their medians.
   void set_times(FrameTimes times) { times_ = std::move(times); }
@@ -133,9 +133,6 @@ class FrameStats {
 
  private:
   using Clock = std::chrono::steady_clock;
-  double since_mark() const {
-    return std::chrono::duration<double, std::milli>(Clock::now() - mark_).count();
-  }
 
   struct Energy {
     int cascade;

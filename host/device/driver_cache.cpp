@@ -12,7 +12,6 @@
 #include <system_error>
 
 #include "support/cache_folder.hpp"
-#include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
 #include "support/log.hpp"
 
@@ -36,10 +35,6 @@ struct FolderOfProcess {
     if (::getpid() != owner) static_cast<void>(folder.release());
   }
 };
-
-std::string name_of_mark(const std::string& key) {
-  return Fingerprint().add(key).hex();
-}
 
 }  // namespace
 
@@ -75,13 +70,13 @@ CompiledMarks::CompiledMarks(const Device& device) {
   if (const auto cache = driver_cache_folder()) folder_.emplace(*cache / "clpv");
 }
 
-bool CompiledMarks::has(const std::string& key) const {
-  return folder_ && folder_->read(name_of_mark(key)).has_value();
+bool CompiledMarks::has(const std::string& program) const {
+  return folder_ && folder_->read(program).has_value();
 }
 
-void CompiledMarks::add(const std::string& key) const {
+void CompiledMarks::add(const std::string& program) const {
   if (!folder_) return;
-  const std::string why = folder_->write(name_of_mark(key), std::string_view(""));
+  const std::string why = folder_->write(program, std::string_view(""));
   if (!why.empty())
     log_debug("no mark of compiled kernels: {}", why);  // costs later runs their helpers' start
 }

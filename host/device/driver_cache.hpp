@@ -31,9 +31,9 @@ class CompiledMarks {
  public:
   explicit CompiledMarks(const Device& device);
   bool available() const { return folder_.has_value(); }
-  /// Returns true if the kernels of the program with this ProgramCache::key are compiled.
-  bool has(const std::string& key) const;
-  void add(const std::string& key) const;
+  /// Returns true if the kernels of the program with this Program::hash are compiled.
+  bool has(const std::string& program) const;
+  void add(const std::string& program) const;
 
  private:
   std::optional<CacheFolder> folder_;

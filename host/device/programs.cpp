@@ -73,12 +73,6 @@ namespace {
 
 constexpr double kNoticeMs = 2000;  // longer waits are explained in the log
 
-/// Name of the file that a helper writes when it has compiled a kernel of the program with that
-/// key.
-std::string name_of_claim(const std::string& key, const std::string& kernel) {
-  return fmt::format("{}.{}", Fingerprint().add(key).hex(), kernel);
-}
-
 /// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug
 /// reports.
 void dump(const ProgramSource& source, const std::string& text) {
@@ -111,9 +105,11 @@ std::shared_ptr<Program> Programs::describe(const ProgramSource& source) {
   std::string text = program_text(specialised);
   std::string key = ProgramCache::key(device_, source.options, text);
   std::shared_ptr<Program>& program = programs_[key];
-  if (!program)
+  if (!program) {
+    const std::string hash = Fingerprint().add(key).hex();
     program = std::make_shared<Program>(
-        Program{std::move(specialised), std::move(text), std::move(key), {}});
+        Program{std::move(specialised), std::move(text), std::move(key), hash, {}});
+  }
   return program;
 }
 
@@ -134,7 +130,7 @@ void Programs::compile_with_helpers() {
   if (compilation_.helpers.empty() || helper_count() == 0 || !marks_.available()) return;
   std::size_t programs = 0, kernels = 0;
   for (const auto& [key, program] : programs_) {
-    if (program->built() != nullptr || marks_.has(key)) continue;
+    if (program->built() != nullptr || marks_.has(program->hash)) continue;
     ++programs;
     kernels += program->kernels.size();
   }
@@ -144,35 +140,27 @@ void Programs::compile_with_helpers() {
   const auto start = std::chrono::steady_clock::now();
   Progress progress("compiling kernels", kernels);
   helped_ = true;
-  const std::unique_ptr<Helpers> helpers = started_helpers();
-  if (!helpers) return;
+  std::optional<Helpers> helpers;
+  try {
+    helpers.emplace(compilation_.helpers);
+  } catch (const Error& error) {  // no folder for them
+    return log_warning("{}: this process compiles all kernels itself", error.what());
+  }
   while (helpers->wait()) {
     stop_if_interrupted("kernels were being compiled");
     // Some are described later.
     progress.reach(std::min(helpers->claims().finished_count(), kernels));
   }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   log_debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
-            helpers->claims().finished_count(), elapsed.count());
+            helpers->claims().finished_count(), ms_since(start) / 1000);
   if (!helpers->failures().empty())
     log_debug("a helper failed, so this process compiles the rest: {}", helpers->failures());
-}
-
-/// Null, with a warning, where no folder can be made for the helpers: a frame needs none.
-std::unique_ptr<Helpers> Programs::started_helpers() const {
-  try {
-    return std::make_unique<Helpers>(compilation_.helpers);
-  } catch (const Error& error) {
-    log_warning("{}: this process compiles all kernels itself", error.what());
-    return nullptr;
-  }
 }
 
 bool Programs::claims(Program& program) {
   if (!compilation_.claims) return true;
   if (!program.claimed)
-    program.claimed =
-        !marks_.has(program.key) && compilation_.claims->take(Fingerprint().add(program.key).hex());
+    program.claimed = !marks_.has(program.hash) && compilation_.claims->take(program.hash);
   return *program.claimed;
 }
 
@@ -182,15 +170,13 @@ void Programs::finish_first_launch(Program& program, const std::string& name,
   const auto start = std::chrono::steady_clock::now();
   const Uninterruptible compiling("this kernel");
   finish();
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - start;
-  log_debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name,
-            elapsed.count());
+  const double ms = ms_since(start);
+  log_debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name, ms);
   if (compilation_.claims) {
-    compilation_.claims->finish(name_of_claim(program.key, name));
-  } else if (marks_.available() && !marks_.has(program.key)) {
-    note_compiling(program, elapsed.count());
-    if (std::ranges::includes(program.launched, program.kernels)) marks_.add(program.key);
+    compilation_.claims->finish(fmt::format("{}.{}", program.hash, name));
+  } else if (marks_.available() && !marks_.has(program.hash)) {
+    note_compiling(program, ms);
+    if (std::ranges::includes(program.launched, program.kernels)) marks_.add(program.hash);
   }
   stop_if_interrupted("kernels were being compiled");
 }
@@ -199,7 +185,7 @@ void Programs::mark_compiled() {
   for (const auto& [key, program] : programs_) {
     if (!claims(*program)) continue;
     build(*program);  // this frame launched none of its kernels, or it is built already
-    marks_.add(key);
+    marks_.add(program->hash);
   }
 }
 
@@ -224,15 +210,14 @@ void Programs::build(Program& program) {
     if (!alone) share_program(context_, program.key, program.built);
   }
   if (recorder_) recorder_->built(program.built);
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - start;
-  build_ms_ += elapsed.count();
-  if (!built_before && !marks_.has(program.key)) note_compiling(program, elapsed.count());
+  const double ms = ms_since(start);
+  build_ms_ += ms;
+  if (!built_before && !marks_.has(program.hash)) note_compiling(program, ms);
   log_debug("kernels/{}: {} in {:.1f} ms", program.source.file,
             program.stored ? "from the cache"
             : built_before ? "of an earlier session"
                            : "compiled",
-            elapsed.count());
+            ms);
 }
 
 /// Explains a long wait for kernels that no earlier run compiled, once for each build_described().

@@ -25,6 +25,7 @@ class Recorder;
 struct Program {
   ProgramSource source;
   std::string text, key;                ///< program_text(source), ProgramCache::key
+  std::string hash;                     ///< of the key: name of its mark and its claim
   cl::Program built;                    ///< null until built
   bool stored = false;                  ///< true if the cache has it
   std::set<std::string> kernels = {};   ///< names of the kernels described so far
@@ -89,7 +90,6 @@ class Programs {
   bool load(Program& program);
   void note_compiling(const Program& program, double ms);
   void compile_with_helpers();
-  std::unique_ptr<Helpers> started_helpers() const;
 
   const Device& device_;
   const cl::Context& context_;

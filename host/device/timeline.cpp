@@ -28,7 +28,7 @@ void Timeline::end(cl::CommandQueue& queue) {
   if (current_ < 0) return;
   if (!events_valid_ && waits_) {
     wait([&] { queue.finish(); });
-    entries_[current_].wall_ms += since(started_);
+    entries_[current_].wall_ms += ms_since(started_);
   }
   current_ = -1;
 }
@@ -60,7 +60,7 @@ std::vector<StageTime> Timeline::times() {
   const bool still = launched && sum == 0;
   const bool is_short =
       waits_ && launched && worked_ms_ >= kLeastWaitMs && sum < worked_ms_ * kLeastShareOfWait;
-  const bool is_long = sum > since(cleared_) * (1 + kClockTolerance);
+  const bool is_long = sum > ms_since(cleared_) * (1 + kClockTolerance);
   if (!events_valid_ || (plausible && !still && !is_short && !is_long)) return result;
   log_warning("the device's events {}: times of stages are the host's from here on",
               !plausible ? "end before they start"
@@ -102,7 +102,7 @@ void Timeline::clear() {
 }
 
 void Timeline::enqueued() {
-  host_.host_ms = since(cleared_) - host_.waited_ms;
+  host_.host_ms = ms_since(cleared_) - host_.waited_ms;
 }
 
 }  // namespace clpv

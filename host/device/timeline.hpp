@@ -10,6 +10,7 @@
 
 #include "device/cl_error.hpp"
 #include "options/stages.hpp"
+#include "support/progress.hpp"
 
 namespace clpv {
 
@@ -61,10 +62,7 @@ struct HostWork {
 class HostPart {
  public:
   explicit HostPart(double& ms) : ms_(ms), start_(std::chrono::steady_clock::now()) {}
-  ~HostPart() {
-    ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
-               .count();
-  }
+  ~HostPart() { ms_ += ms_since(start_); }
   HostPart(const HostPart&) = delete;
   HostPart& operator=(const HostPart&) = delete;
 
@@ -124,8 +122,8 @@ class Timeline {
     const Clock::time_point start = Clock::now();
     named_errors(wait);
     ++host_.waits;
-    host_.waited_ms += since(start);
-    if (!compiles) worked_ms_ += since(start);
+    host_.waited_ms += ms_since(start);
+    if (!compiles) worked_ms_ += ms_since(start);
   }
   /// Waits until the queue's work is done, which ends a frame.
   void finish(cl::CommandQueue& queue) {
@@ -147,9 +145,6 @@ class Timeline {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static double since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-  }
   struct Launch {
     cl::Event event;
     cl::Kernel kernel;

@@ -22,6 +22,7 @@ namespace {
 constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;
 constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
+constexpr std::string_view kMetadataPrefix = "clpv:";
 constexpr std::size_t kMaxParts = 1024, kMaxAttributes = 1024;  // OpenImageIO's time is quadratic
 constexpr std::array<std::string_view, 4> kPartTypes = {
     {"scanlineimage", "tiledimage", "deepscanline", "deeptile"}};
@@ -78,25 +79,26 @@ struct ExrPart : ExrHeader {
   std::size_t attributes = 0;
 };
 
-/// Counts the entries of a channel list: names, each followed by type and sampling, ended by an
+/// Reads the entries of a channel list: names, each followed by type and sampling, ended by an
 /// empty name. Rejects channels of less resolution, and names that are not unique and sorted:
 /// OpenImageIO does not end with two of one name, and values of others may be in either order.
-std::int64_t count_channels(Cursor list, std::string_view place) {
+void read_channels(ExrPart& part, Cursor list, std::string_view place) {
   constexpr std::size_t kTypeBytes = 8;
-  std::int64_t count = 0;
-  std::string before;
-  for (std::string name; !(name = list.name(place)).empty(); before = name, ++count) {
-    if (name <= before)
-      reject(list.file(), place, fmt::format("channel '{}' after '{}'", name, before),
+  constexpr std::uint32_t kFloat = 2;
+  std::vector<std::string>& names = part.channel_names;
+  for (std::string name; !(name = list.name(place)).empty(); names.push_back(name)) {
+    if (!names.empty() && name <= names.back())
+      reject(list.file(), place, fmt::format("channel '{}' after '{}'", name, names.back()),
              "unique names in alphabetical order");
-    list.take(kTypeBytes, place);
+    const auto type = little_endian(list.take(kTypeBytes, place), 0);
+    part.floats = part.floats && type == kFloat;
     const auto x = list.number(place), y = list.number(place);
     if (x != 1 || y != 1) {
       reject(list.file(), place,
              fmt::format("channel '{}' sampled every {} x {} pixels", name, x, y), "1 x 1");
     }
   }
-  return count;
+  part.channels = static_cast<std::int64_t>(names.size());
 }
 
 ExrWindow read_window(Cursor& value, std::string_view place) {
@@ -128,12 +130,15 @@ void store_value(ExrPart& part, Cursor value, std::string_view place, std::strin
   } else if (name == "tiles" && type == "tiledesc") {
     part.tile_width = value.number(place), part.tile_height = value.number(place);
   } else if (name == "compression" && type == "compression") {
-    part.rows = kChunkRows[std::min<std::size_t>(value.take(1, place)[0], kChunkRows.size() - 1)];
+    part.compression = value.take(1, place)[0];
+    part.rows = kChunkRows[std::min<std::size_t>(part.compression, kChunkRows.size() - 1)];
   } else if (name == "type" && type == "string") {
     part.type = text();
   } else if (name == "channels" && type == "chlist") {
     if (part.channels != 0) reject(value.file(), place, "a second list of channels", "one");
-    part.channels = count_channels(value, place);
+    read_channels(part, value, place);
+  } else if (name.starts_with(kMetadataPrefix) && type == "string") {
+    part.metadata[std::string(name.substr(kMetadataPrefix.size()))] = text();
   }
 }
 
@@ -186,6 +191,7 @@ std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
     if (several && part.attributes == 0) break;  // an empty header ends the list of parts
     if (typed) check_type(file, fmt::format("part {}", index), part);
     set_chunk_size(part, flags, typed);
+    part.end = bytes.size() - file.left();
     if (part.display == ExrWindow{}) part.display = part.data;
     parts.push_back(part);
     if (index == kMaxParts)

@@ -21,48 +21,23 @@ namespace {
 
 using Data = std::span<const std::uint8_t>;
 
-bool starts_with(Data bytes, Data prefix) {
-  return bytes.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), bytes.begin());
+std::string_view as_text(Data bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-bool contains(Data bytes, Data sequence) {
-  return std::search(bytes.begin(), bytes.end(), sequence.begin(), sequence.end()) != bytes.end();
-}
-
-constexpr std::size_t kPngSignature = 8;
-
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::size_t kChunkData = 8, kChunkCheck = 4;  // bytes before and after a chunk's data
-
-/// Calls `visit(type, chunk)` for each chunk of a PNG up to IEND. Returns false if a chunk exceeds
-/// the bytes.
-template <typename Visit>
-bool visit_chunks(Data bytes, const Visit& visit) {
-  // Length and type before a chunk's data, checksum after them.
-  constexpr std::size_t kOverhead = 12;
-  for (std::size_t at = kPngSignature; bytes.size() - at >= kOverhead;) {
-    const std::size_t length = big_endian(bytes, at, 4);
-    if (length > bytes.size() - at - kOverhead) return false;
-    const Data chunk = bytes.subspan(at, kOverhead + length);
-    const std::string_view type(reinterpret_cast<const char*>(chunk.data()) + 4, 4);
-    visit(type, chunk);
-    if (type == "IEND") return true;
-    at += chunk.size();
-  }
-  return false;
-}
 
 std::optional<ImageHeader> png_header(Data bytes) {
   // Signature, then the IHDR chunk.
-  constexpr std::size_t kWidth = 16, kHeight = 20, kHeaderEnd = 33;
-  constexpr std::array<std::uint8_t, 4> kHeaderType = {'I', 'H', 'D', 'R'};
-  if (bytes.size() < kHeaderEnd || !starts_with(bytes.subspan(12), kHeaderType))
+  constexpr std::size_t kType = 12, kWidth = 16, kHeight = 20, kHeaderEnd = 33;
+  if (bytes.size() < kHeaderEnd || !as_text(bytes).substr(kType).starts_with("IHDR"))
     return std::nullopt;
   return ImageHeader{ImageFormat::png, big_endian(bytes, kWidth, 4), big_endian(bytes, kHeight, 4),
-                     visit_chunks(bytes, [](std::string_view, Data) {})};
+                     visit_png_chunks(bytes, [](std::string_view, Data) {})};
 }
 
 std::optional<ImageHeader> jpeg_header(Data bytes) {
-  constexpr std::array<std::uint8_t, 2> kEnd = {0xff, 0xd9};
   for (std::size_t at = 2; at + 9 < bytes.size() && bytes[at] == 0xff;) {
     const std::uint8_t marker = bytes[at + 1];
     if (marker == 0xff) {  // fill byte
@@ -74,7 +49,8 @@ std::optional<ImageHeader> jpeg_header(Data bytes) {
         marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     if (frame) {
       return ImageHeader{ImageFormat::jpeg, big_endian(bytes, at + 7, 2),
-                         big_endian(bytes, at + 5, 2), contains(bytes.subspan(at), kEnd)};
+                         big_endian(bytes, at + 5, 2),
+                         as_text(bytes).find("\xff\xd9", at) != std::string_view::npos};
     }
     at += 2 + big_endian(bytes, at + 2, 2);
   }
@@ -98,7 +74,7 @@ WebpChunks webp_chunks(Data bytes) {
   WebpChunks found;
   bool has_alpha = false;
   for (std::size_t at = kRiffHeader; bytes.size() - at >= kRiffChunkHeader;) {
-    const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + at, 4);
+    const std::string_view type = as_text(bytes).substr(at, 4);
     const std::size_t room = bytes.size() - at - kRiffChunkHeader,
                       size = little_endian(bytes, at + 4, 4), used = std::min(size, room);
     const Data chunk = bytes.subspan(at, kRiffChunkHeader + used);
@@ -119,7 +95,6 @@ WebpChunks webp_chunks(Data bytes) {
 std::optional<ImageHeader> webp_header(Data bytes) {
   constexpr std::uint32_t kSide = 0x3fff;                        // 14 bits
   constexpr std::size_t kLossyHeader = 10, kLosslessHeader = 5;  // start and sides
-  constexpr std::array<std::uint8_t, 3> kLossyStart = {0x9d, 0x01, 0x2a};
   const WebpChunks chunks = webp_chunks(bytes);
   const Data image = chunks.image;
   if (image.empty() ||
@@ -131,39 +106,40 @@ std::optional<ImageHeader> webp_header(Data bytes) {
     return ImageHeader{ImageFormat::webp, (sides & kSide) + 1, (sides >> 14 & kSide) + 1,
                        chunks.complete};
   }
-  if (!starts_with(image.subspan(kRiffChunkHeader + 3), kLossyStart)) return std::nullopt;
+  if (!as_text(image).substr(kRiffChunkHeader + 3).starts_with("\x9d\x01\x2a")) return std::nullopt;
   return ImageHeader{ImageFormat::webp, little_endian(image, kRiffChunkHeader + 6, 2) & kSide,
                      little_endian(image, kRiffChunkHeader + 8, 2) & kSide, chunks.complete};
 }
 
-void append_little_endian(std::vector<std::uint8_t>& to, std::uint32_t value, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) to.push_back(static_cast<std::uint8_t>(value >> 8 * i));
-}
-
-void append_chunk(std::vector<std::uint8_t>& to, Data chunk) {
-  to.insert(to.end(), chunk.begin(), chunk.end());
-  if (chunk.size() % 2 != 0) to.push_back(0);
-}
-
 }  // namespace
 
+bool visit_png_chunks(Data png, const std::function<void(std::string_view, Data)>& visit) {
+  constexpr std::size_t kOverhead = kChunkData + kChunkCheck;
+  for (std::size_t at = kPngSignature.size(); png.size() - at >= kOverhead;) {
+    const std::size_t length = big_endian(png, at, 4);
+    if (length > png.size() - at - kOverhead) return false;
+    const std::string_view type = as_text(png).substr(at + 4, 4);
+    visit(type, png.subspan(at, kOverhead + length));
+    if (type == "IEND") return true;
+    at += kOverhead + length;
+  }
+  return false;
+}
+
 std::optional<ImageHeader> read_image_header(Data bytes) {
-  constexpr std::array<std::uint8_t, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  constexpr std::array<std::uint8_t, 3> kJpeg = {0xff, 0xd8, 0xff};
-  if (starts_with(bytes, kPng)) return png_header(bytes);
-  if (starts_with(bytes, kJpeg)) return jpeg_header(bytes);
-  constexpr std::array<std::uint8_t, 4> kRiff = {'R', 'I', 'F', 'F'}, kWebp = {'W', 'E', 'B', 'P'};
-  if (bytes.size() >= kRiffHeader && starts_with(bytes, kRiff) &&
-      starts_with(bytes.subspan(8), kWebp))
-    return webp_header(bytes);
-  return std::nullopt;
+  const std::string_view text = as_text(bytes);
+  if (text.starts_with(kPngSignature)) return png_header(bytes);
+  if (text.starts_with("\xff\xd8\xff")) return jpeg_header(bytes);
+  const bool webp =
+      bytes.size() >= kRiffHeader && text.starts_with("RIFF") && text.substr(8).starts_with("WEBP");
+  return webp ? webp_header(bytes) : std::nullopt;
 }
 
 std::vector<std::uint8_t> strip_png(Data bytes) {
   constexpr std::array<std::string_view, 6> kKept = {"IHDR", "PLTE", "tRNS",
                                                      "tEXt", "IDAT", "IEND"};
-  std::vector<std::uint8_t> kept(bytes.begin(), bytes.begin() + kPngSignature);
-  visit_chunks(bytes, [&](std::string_view type, Data chunk) {
+  std::vector<std::uint8_t> kept(bytes.begin(), bytes.begin() + kPngSignature.size());
+  visit_png_chunks(bytes, [&](std::string_view type, Data chunk) {
     if (std::ranges::find(kKept, type) != kKept.end())
       kept.insert(kept.end(), chunk.begin(), chunk.end());
   });
@@ -176,7 +152,7 @@ std::string foreign_colour(Data png) {
   constexpr std::array<std::size_t, 8> kOrder = {6, 7, 0, 1, 2, 3, 4, 5};  // cHRM begins with white
   std::string found;
   bool srgb = false;
-  visit_chunks(png, [&](std::string_view type, Data chunk) {
+  visit_png_chunks(png, [&](std::string_view type, Data chunk) {
     const Data data = chunk.subspan(kChunkData, chunk.size() - kChunkData - kChunkCheck);
     if (type == "sRGB") srgb = true;
     if (type == "gAMA" && data.size() == 4) {
@@ -198,28 +174,27 @@ std::string foreign_colour(Data png) {
 std::vector<std::uint8_t> strip_webp(Data bytes, bool alpha) {
   const WebpChunks chunks = webp_chunks(bytes);
   const ImageHeader header = *webp_header(bytes);
-  std::vector<std::uint8_t> kept;
-  const auto append_text = [&kept](std::string_view text) {
-    kept.insert(kept.end(), text.begin(), text.end());
+  std::string content = "WEBP";
+  const auto add = [&content](Data chunk) {
+    content += as_text(chunk);
+    if (chunk.size() % 2 != 0) content.push_back(0);
   };
-  append_text("RIFF");
-  append_little_endian(kept, 0, 4);  // size, set below
-  append_text("WEBP");
   if (alpha && !chunks.lossless() && !chunks.alpha.empty()) {
-    append_text("VP8X");
-    append_little_endian(kept, 10, 4);
-    append_little_endian(kept, kWebpAlpha, 4);
-    append_little_endian(kept, header.width - 1, 3);
-    append_little_endian(kept, header.height - 1, 3);
-    append_chunk(kept, chunks.alpha);
+    content += "VP8X";
+    append_little(content, 10u, kWebpAlpha);
+    for (const std::uint32_t side : {header.width - 1, header.height - 1})  // 24 bits
+      append_little(content, static_cast<std::uint16_t>(side),
+                    static_cast<std::uint8_t>(side >> 16));
+    add(chunks.alpha);
   }
-  const std::size_t image = kept.size();
-  append_chunk(kept, chunks.image);
+  const std::size_t image = content.size();
+  add(chunks.image);
   if (!alpha && chunks.lossless())
-    kept[image + kRiffChunkHeader + 4] &= static_cast<std::uint8_t>(~(kLosslessAlpha >> 24));
-  for (std::size_t i = 0; i < 4; ++i)
-    kept[4 + i] = static_cast<std::uint8_t>((kept.size() - kRiffChunkHeader) >> 8 * i);
-  return kept;
+    content[image + kRiffChunkHeader + 4] &= static_cast<char>(~(kLosslessAlpha >> 24));
+  std::string file = "RIFF";
+  append_little(file, static_cast<std::uint32_t>(content.size()));
+  file += content;
+  return {file.begin(), file.end()};
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <optional>
 #include <span>
@@ -60,6 +61,11 @@ struct ExrHeader : DeclaredImage {
   ExrWindow display;  ///< the data window if the file has no other
   std::optional<Chromaticities> chromaticities;
   bool cube_map = false;
+  std::vector<std::string> channel_names;
+  bool floats = true;                           ///< all channels are of 32-bit floats
+  int compression = 0;                          ///< 0: none
+  std::map<std::string, std::string> metadata;  ///< texts "clpv:NAME", by NAME
+  std::size_t end = 0;                          ///< bytes of the file up to the header's end
 };
 
 enum class ImageFormat { png, jpeg, webp };
@@ -76,6 +82,12 @@ struct ImageHeader {
 /// Reads the header of a PNG, JPEG or WebP; empty for other or truncated bytes, and for an animated
 /// WebP.
 std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
+
+/// Calls visit(type, chunk) for each chunk of a PNG up to IEND: 8 bytes, the data, and 4 bytes of a
+/// checksum. Returns false if a chunk exceeds the bytes.
+bool visit_png_chunks(
+    std::span<const std::uint8_t> png,
+    const std::function<void(std::string_view, std::span<const std::uint8_t>)>& visit);
 
 /// Copies a complete PNG with only those chunks that its pixels need, and uncompressed texts.
 /// libpng would allocate memory for the declared size of compressed ones.

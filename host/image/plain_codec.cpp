@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "image/codec.hpp"
+#include "image/image_header.hpp"
 #include "support/array_files.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -187,25 +188,15 @@ const ImageCodec& plain_codec() {
 namespace clpv {
 namespace {
 
-constexpr std::string_view kPrefix = "clpv:";  // prefix of metadata
-
-/// Adds an entry of a file to the metadata if clpv wrote the entry.
-void keep_metadata(CodedImage& image, const std::string& name, std::string value) {
-  if (name.starts_with(kPrefix)) image.metadata[name.substr(kPrefix.size())] = std::move(value);
-}
-
-/// Metadata of a PNG, from chunks tEXt: a name, a zero and the text.
+/// Metadata of a PNG, from chunks tEXt: "clpv:NAME", a zero and the text.
 void read_texts(CodedImage& image, std::span<const std::uint8_t> png) {
-  constexpr std::size_t kSignature = 8, kHead = 8, kCrc = 4;
-  for (std::size_t at = kSignature; at + kHead + kCrc <= png.size();) {
-    const std::size_t size = big_endian(png, at, 4);
-    if (size > png.size() - at - kHead - kCrc) return;
-    const std::string data(reinterpret_cast<const char*>(&png[at + kHead]), size);
+  visit_png_chunks(png, [&](std::string_view type, std::span<const std::uint8_t> chunk) {
+    constexpr std::string_view kPrefix = "clpv:";
+    const std::string data(chunk.begin() + 8, chunk.end() - 4);
     const std::size_t zero = data.find('\0');
-    if (std::memcmp(&png[at + 4], "tEXt", 4) == 0 && zero != std::string::npos)
-      keep_metadata(image, data.substr(0, zero), data.substr(zero + 1));
-    at += kHead + size + kCrc;
-  }
+    if (type == "tEXt" && data.starts_with(kPrefix) && zero != std::string::npos)
+      image.metadata[data.substr(kPrefix.size(), zero - kPrefix.size())] = data.substr(zero + 1);
+  });
 }
 
 class PlainDecoder : public ImageDecoder {
@@ -260,33 +251,13 @@ class PlainExr : public PlainDecoder {
 
   std::string open() {
     constexpr std::uint32_t kVersion = 2, kLongNames = 0x400;
-    constexpr std::size_t kFlagsAt = 4, kTypeAndSampling = 16, kFloat = 2;
-    if ((little_endian(bytes_, kFlagsAt) & ~kLongNames) != kVersion) return kOthers;
-    at_ = 2 * kFlagsAt;
-    for (std::string name; !(name = text()).empty();) {
-      const std::string type = text();
-      const std::size_t size = little_endian(bytes_, at_), end = at_ + 4 + size;
-      at_ += 4;
-      if (name == "compression" && type == name && bytes_[at_] != 0) return kOthers;
-      if (name == "dataWindow" && type == "box2i") {
-        const auto side = [&](std::size_t from) {
-          return little_endian<std::int32_t>(bytes_, at_ + from + 8) -
-                 little_endian<std::int32_t>(bytes_, at_ + from) + 1;
-        };
-        image_.width = side(0), image_.height = side(4);
-      } else if (name == "channels" && type == "chlist") {
-        while (bytes_[at_] != 0) {
-          image_.channels.push_back(text());
-          if (little_endian(bytes_, at_) != kFloat || little_endian(bytes_, at_ + 8) != 1 ||
-              little_endian(bytes_, at_ + 12) != 1)
-            return kOthers;
-          at_ += kTypeAndSampling;
-        }
-      } else if (type == "string") {
-        keep_metadata(image_, name, {bytes_.begin() + at_, bytes_.begin() + end});
-      }
-      at_ = end;
-    }
+    const ExrHeader header = read_exr_header("image", bytes_).front();
+    if ((little_endian(bytes_, 4) & ~kLongNames) != kVersion || header.compression != 0 ||
+        !header.floats)
+      return kOthers;
+    image_.width = static_cast<int>(header.width), image_.height = static_cast<int>(header.height);
+    image_.channels = header.channel_names, image_.metadata = header.metadata;
+    at_ = header.end;
     const std::size_t rows = (bytes_.size() - at_) / sizeof(std::uint64_t);
     return std::int64_t{image_.height} <= static_cast<std::int64_t>(rows) ? "" : "no table of rows";
   }
@@ -311,14 +282,6 @@ class PlainExr : public PlainDecoder {
   static constexpr const char* kOthers =
       "this clpv was built without OpenImageIO (CLPV_IMAGES=OFF); it decodes EXR of floats in rows "
       "without compression only";
-
-  /// Returns the text up to the next zero, and passes both.
-  std::string text() {
-    const auto zero = std::ranges::find(bytes_.subspan(at_), 0);
-    std::string found(bytes_.begin() + at_, zero);
-    at_ += found.size() + 1;
-    return found;
-  }
 
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;  ///< after open(): the table of offsets of rows

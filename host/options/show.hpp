@@ -37,7 +37,7 @@ inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "ir
                                                "normal", "depth", "medium", "cells");
 
 /// Views of surfaces, which kernels shade. `medium` is computed by stage `medium`, `cells` drawn
-/// by the host (raster/cells).
+/// by the host (raster/paint).
 inline constexpr std::array kSurfaceViews{Show::full,       Show::direct, Show::indirect,
                                           Show::irradiance, Show::albedo, Show::normal,
                                           Show::depth};

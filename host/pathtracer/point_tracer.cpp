@@ -33,19 +33,9 @@ glm::vec3 surrounding(int ray) {
                                    sobol_point(static_cast<std::uint32_t>(ray), kPointSeed)));
 }
 
-/// Corners of the box about all vertices.
-std::pair<glm::dvec3, glm::dvec3> box_of(const SceneData& scene) {
-  glm::dvec3 lower(std::numeric_limits<double>::infinity()), upper(-lower);
-  for (const Vertex& v : scene.vertices) {
-    lower = glm::min(lower, vector(v.position));
-    upper = glm::max(upper, vector(v.position));
-  }
-  return {lower, upper};
-}
-
 glm::dvec3 to_origin(const SceneData& scene) {
-  const auto [lower, upper] = box_of(scene);
-  return scene.vertices.empty() ? glm::dvec3(0) : -(lower + upper) / 2.0;
+  const auto [lower, upper] = bounds_of(scene.vertices);
+  return -(glm::dvec3(lower) + glm::dvec3(upper)) / 2.0;
 }
 
 std::uint32_t of_stream(std::uint32_t samples, std::uint32_t stream) {
@@ -75,8 +65,8 @@ struct PointTracer::Impl {
         emitters(centred.scene, rays.materials()),
         sky(centred.scene.sky.get()),
         threads(given.threads > 0 ? given.threads : single_rank().processors()) {
-    const auto [lower, upper] = box_of(scene);
-    const glm::dvec3 edges = upper - lower;
+    const auto [lower, upper] = bounds_of(scene.vertices);
+    const glm::dvec3 edges = glm::dvec3(upper) - glm::dvec3(lower);
     near_surface = kSurfaceDistance * std::max({edges.x, edges.y, edges.z});
   }
 

@@ -15,6 +15,10 @@
 #include "support/error.hpp"
 #include "support/text.hpp"
 
+namespace tinygltf {
+std::string base64_decode(const std::string& text);
+}  // namespace tinygltf
+
 namespace clpv {
 
 namespace fs = std::filesystem;
@@ -27,33 +31,13 @@ bool same_letters(std::string_view text, std::string_view lower) {
   return std::ranges::equal(text, lower, {}, [](unsigned char c) { return std::tolower(c); });
 }
 
-/// Value of a base64 digit (RFC 4648, section 4); empty for other characters.
-std::optional<std::uint32_t> base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+') return 62;
-  if (c == '/') return 63;
-  return std::nullopt;
-}
-
 /// Decodes base64, with or without padding; empty for other characters and for a single last digit.
-std::optional<Bytes> base64_decoded(std::string_view text) {
-  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
-  if (text.size() % 4 == 1) return std::nullopt;
-  Bytes out;
-  out.reserve(text.size() / 4 * 3 + 2);
-  std::uint32_t bits = 0, count = 0;
-  for (const char c : text) {
-    const auto digit = base64_digit(c);
-    if (!digit) return std::nullopt;
-    bits = bits << 6 | *digit;
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    out.push_back(static_cast<std::uint8_t>(bits >> count));
-  }
-  return out;
+std::optional<Bytes> base64_decoded(std::string text) {
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.pop_back();
+  const auto digit = [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '/'; };
+  if (text.size() % 4 == 1 || !std::ranges::all_of(text, digit)) return std::nullopt;
+  const std::string bytes = tinygltf::base64_decode(text);
+  return Bytes(bytes.begin(), bytes.end());
 }
 
 bool lies_in(const fs::path& path, const fs::path& folder) {

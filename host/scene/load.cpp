@@ -8,9 +8,9 @@
 #include <cmath>
 #include <future>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 #include <numbers>
 
+#include "scene/emission.hpp"
 #include "scene/gltf_parts.hpp"
 #include "scene/input.hpp"
 #include "scene/sky.hpp"
@@ -76,15 +76,8 @@ SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, M
 }
 
 void find_bounds(SceneData& scene) {
-  scene.lower = scene.upper = glm::vec3(0);
-  if (scene.vertices.empty()) return;
-  scene.lower = glm::vec3(std::numeric_limits<float>::max());
-  scene.upper = -scene.lower;
-  for (const Vertex& vertex : scene.vertices) {
-    const glm::vec3 p(vertex.position[0], vertex.position[1], vertex.position[2]);
-    scene.lower = glm::min(scene.lower, p);
-    scene.upper = glm::max(scene.upper, p);
-  }
+  const Bounds box = bounds_of(scene.vertices);
+  scene.lower = box.lower, scene.upper = box.upper;
 }
 
 /// Notes a scene so small that lamps cannot light it, which renders black.
@@ -277,10 +270,9 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   if (scene_.medium) set_medium(*scene_.medium);
   scene_.notes = notes.take();
   if (description_.light_scale) std::erase(scene_.notes, kBlenderUnits);
-  const bool emits = std::ranges::any_of(scene_.materials, [](const ClpvMaterial& material) {
-    return std::ranges::any_of(material.emissive, [](float value) { return value > 0; });
-  });
-  add_defaults(description_.lights.has_value() || scene_.sky || emits);
+  const bool glows = std::ranges::any_of(
+      scene_.materials, [](const ClpvMaterial& material) { return emits(material); });
+  add_defaults(description_.lights.has_value() || scene_.sky || glows);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
   scene_.name = printable(path.stem().string());  // JSON and metadata have UTF-8 only

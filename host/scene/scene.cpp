@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "scene/sky.hpp"
 #include "support/error.hpp"
@@ -18,6 +19,17 @@ ClpvMaterial blank_material() {
   std::fill(std::begin(made.base_colour), std::end(made.base_colour), 1.0f);
   made.texture = made.emissive_texture = CLPV_NO_TEXTURE;
   return made;
+}
+
+Bounds bounds_of(const std::vector<Vertex>& vertices) {
+  if (vertices.empty()) return {};
+  Bounds box{glm::vec3(std::numeric_limits<float>::max()),
+             glm::vec3(std::numeric_limits<float>::lowest())};
+  for (const Vertex& vertex : vertices) {
+    const glm::vec3 p(vertex.position[0], vertex.position[1], vertex.position[2]);
+    box = {glm::min(box.lower, p), glm::max(box.upper, p)};
+  }
+  return box;
 }
 
 double SceneData::reach() const {

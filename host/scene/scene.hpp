@@ -81,6 +81,9 @@ struct Bounds {
   glm::vec3 lower{0}, upper{0};
 };
 
+/// Returns the box about all vertices. An empty box at the origin without any.
+Bounds bounds_of(const std::vector<Vertex>& vertices);
+
 /// Range of a scene's vertices and triangles.
 struct MeshRange {
   std::uint32_t first_vertex, vertices, first_triangle, triangles;

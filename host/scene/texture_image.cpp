@@ -15,6 +15,7 @@
 #include "image/codec.hpp"
 #include "image/image_header.hpp"
 #include "scene/bounds.hpp"
+#include "scene/emission.hpp"
 #include "scene/gltf_parts.hpp"
 #include "support/error.hpp"
 
@@ -315,10 +316,6 @@ BaseColour base_colour_of(const tinygltf::Material& source) {
       static_cast<int>(number_in(texture, "texCoord", 0)),
       texture.Has("extensions") ? texture.Get("extensions").Get<Value::Object>() : Value::Object());
   return made;
-}
-
-bool emits(const ClpvMaterial& material) {
-  return material.emissive[0] + material.emissive[1] + material.emissive[2] > 0;
 }
 
 /// Share of light that a pane of glass transmits: its factor times the mean of the base colour.

@@ -90,11 +90,6 @@ constexpr const char* kKey = "frame_key";       // metadata: the key of a frame
 constexpr const char* kPixels = "pixels_hash";  // metadata: hash of the pixels
 constexpr std::size_t kKeyDigits = 16;
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
-
 std::string pixels_hash(const Image& image) {
   Fingerprint print;
   add_pixels(print, image);
@@ -176,7 +171,7 @@ void Sequence::render() {
   }
   ranks_.sum(counts);
   if (there > 0) log_info("{} of {} frames existed already", there, options_.frames);
-  if (rendered > 0) log_info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
+  if (rendered > 0) log_info("{} frames in {:.1f} s", rendered, ms_since(started) / 1000);
   write_summary();
   if (renderer_) renderer_->session.programs().store();
   renderer_.reset();
@@ -236,7 +231,7 @@ bool Sequence::render(int number) {
   const double seconds = options_.time_of(number);
   Clock::time_point started = Clock::now();
   moving_.pose(seconds);
-  const double host_ms = milliseconds_since(started);
+  const double host_ms = ms_since(started);
   const nlohmann::json description = described(seconds);
   FrameLine line;
   line.frame = number, line.seconds = seconds;
@@ -248,11 +243,11 @@ bool Sequence::render(int number) {
   auto& [session, frame] = *renderer_;
   started = Clock::now();
   if (moving_.moves()) frame.scene_moved();
-  line.pose_ms = host_ms + milliseconds_since(started);
+  line.pose_ms = host_ms + ms_since(started);
   started = Clock::now();
   frame.render(camera());
   session.timeline().finish(session.queue());
-  line.frame_ms = milliseconds_since(started);
+  line.frame_ms = ms_since(started);
   if (!line.first) line.stages = session.timeline().times();
   if (line.first) subject_.first_frame(session, frame);
   log_debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, line.frame_ms);
@@ -272,7 +267,7 @@ void Sequence::write(FrameLine line, Frame& frame, const nlohmann::json& descrip
       options_.format == FrameFormat::exr ? exr_bytes(shown) : png_bytes(shown);
   OutputFile file(options_.file(line.frame), OutputFile::Kind::derived);
   file.write(std::as_bytes(std::span(bytes)));
-  line.write_ms = milliseconds_since(started);
+  line.write_ms = ms_since(started);
   times_.append(to_json(line));
   file.commit();
 }

@@ -9,6 +9,13 @@
 
 namespace clpv {
 
+/// Returns the time since `start` [ms].
+inline double ms_since(std::chrono::steady_clock::time_point start) {
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  return elapsed.count();
+}
+
 /// bar: on stderr, if it is a terminal, TERM is not `dumb` and NO_COLOR not set; lines: a log line
 /// every 10 s, for batch jobs; none.
 enum class ProgressStyle { bar, lines, none };

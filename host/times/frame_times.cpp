@@ -62,14 +62,14 @@ FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& cam
     frame.render(camera);
     const HostWork host = session.timeline().host();
     session.timeline().finish(session.queue());
-    const std::chrono::duration<double, std::milli> wall = Clock::now() - start;
+    const double wall_ms = ms_since(start);
     if (after) after();
     const bool events = session.timeline().events_valid();
     const std::vector<StageTime> stages = session.timeline().times();
     if (events != session.timeline().events_valid()) {
       times = {}, i = -warm_up - 1;  // all again, by one clock
     } else if (i >= 0) {
-      times.add(stages, {wall.count(), host});
+      times.add(stages, {wall_ms, host});
     }
   }
   times.set_kernels(session.timeline().kernel_times());

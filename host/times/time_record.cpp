@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
-
-#include "support/json_optional.hpp"
 
 namespace clpv {
 namespace {
@@ -49,23 +46,6 @@ TimeRecord time_record(const StageMark& mark, std::vector<double> samples_ms) {
   TimeRecord record = time_record(std::string(name_of(mark.pass)), std::move(samples_ms));
   record.cascade = mark.cascade, record.light = mark.light;
   return record;
-}
-
-void to_json(nlohmann::json& json, const TimeRecord& record) {
-  json = {{"stage", record.stage}, {"cascade", record.cascade}, {"light", record.light},
-          {"n", record.n},         {"min", record.min},         {"median", record.median},
-          {"mad", record.mad},     {"max", record.max}};
-}
-
-void from_json(const nlohmann::json& json, TimeRecord& record) {
-  record = {json.at("stage"),
-            json.at("cascade").get<std::optional<int>>(),
-            json.at("light").get<std::optional<int>>(),
-            json.at("n"),
-            json.at("min"),
-            json.at("median"),
-            json.at("mad"),
-            json.at("max")};
 }
 
 std::vector<Rule> time_rules(const std::string& place) {

@@ -85,9 +85,9 @@ Cases cases_of(Stage stage, const CheckScope& scope) {
 CheckResults run_case(const Case& compared, Session& session) {
   const auto start = std::chrono::steady_clock::now();
   CheckResults results = results_of(compared, session);
-  const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
+  const double seconds = ms_since(start) / 1000;
   for (CheckResult& result : results)
-    result.seconds = all.count() / static_cast<double>(results.size());
+    result.seconds = seconds / static_cast<double>(results.size());
   return results;
 }
 

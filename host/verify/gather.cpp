@@ -185,23 +185,11 @@ SurfaceImage near_surfaces(std::mt19937& random) {
 
 /// Maps are empty or, texel by texel at random, block all light: no depth is close to that of a
 /// surface.
-reference::MappedLight near_light(const ClpvLight& light, bool shadows, std::mt19937& random) {
-  reference::MappedLight mapped{light, {}};
-  if (!shadows) return mapped;
-  for (const ClpvView& view : shadow_views(light, {{-30, -30, -30}, {30, 30, 30}}, kNearMap)) {
-    reference::ShadowMap& map = mapped.maps.emplace_back(reference::ShadowMap{view, {}});
-    for (unsigned texel = 0; texel < kNearMap * kNearMap; ++texel)
-      map.depth.push_back(random() % 3 == 0 ? 1e-3f : 0.0f);
-  }
-  return mapped;
-}
-
 std::vector<reference::MappedLight> near_lights(std::mt19937& random) {
-  const ClpvLight sun{
-      {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, 0, {}, {}};
-  const ClpvLight point{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, 0, {}, {}};
-  return {near_light(sun, true, random), near_light(point, true, random),
-          near_light(sun, false, random)};
+  const auto depth = [&] { return random() % 3 == 0 ? 1e-3f : 0.0f; };
+  return {mapped_light(kSun, kWideBounds, kNearMap, kNearMap, depth),
+          mapped_light(kPoint, kWideBounds, kNearMap, kNearMap, depth),
+          {kSun, {}}};
 }
 
 struct NearCase {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 
 #include "basis/matrix.hpp"
@@ -36,10 +37,7 @@ constexpr int kMapSize = 16;  // texels along each side of a shadow map
 
 reference::MappedLight mapped(ClpvLight light, const ClpvMedium& medium, float depth) {
   light.medium = medium;
-  reference::MappedLight result{light, {}};
-  for (const ClpvView& view : shadow_views(light, {{-30, -30, -30}, {30, 30, 30}}, kMapSize))
-    result.maps.push_back({view, std::vector<float>(kMapSize * kMapSize, depth)});
-  return result;
+  return mapped_light(light, kWideBounds, kMapSize, kMapSize, [&] { return depth; });
 }
 
 }  // namespace
@@ -214,15 +212,29 @@ GatheredLight CascadesOnDevice::gathered() const {
   return light;
 }
 
+const ClpvLight kSun{
+    {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, 0, {}, {}};
+const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, 0, {}, {}};
+
+reference::MappedLight mapped_light(const ClpvLight& light, const Bounds& bounds, unsigned width,
+                                    unsigned height, const std::function<float()>& depth) {
+  reference::MappedLight mapped{light, {}};
+  for (ClpvView view : shadow_views(light, bounds, static_cast<int>(width))) {
+    view.height = height;
+    std::vector<float>& depths = mapped.maps.emplace_back(reference::ShadowMap{view, {}}).depth;
+    std::generate_n(std::back_inserter(depths), width * height, depth);
+  }
+  return mapped;
+}
+
 std::vector<reference::MappedLight> lights_in(const ClpvMedium& medium) {
-  const ClpvLight sun{
-      {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, 0, {}, {}};
   const ClpvLight point{{1, 1.5f, -2.3f}, CLPV_LIGHT_POINT, {}, 0, {6, 5, 4}, 0, 0, 0, {}, {}};
   const ClpvLight spot{
       {-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, 0, {}, {}};
   reference::MappedLight unshadowed{spot, {}};
   unshadowed.light.medium = medium;
-  return {mapped(sun, medium, 0), mapped(sun, medium, 1e-3f), mapped(point, medium, 0), unshadowed};
+  return {mapped(kSun, medium, 0), mapped(kSun, medium, 1e-3f), mapped(point, medium, 0),
+          unshadowed};
 }
 
 std::vector<ShadowedLight> on_device(Session& session,

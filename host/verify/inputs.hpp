@@ -57,6 +57,15 @@ std::shared_ptr<reference::Volume> random_light(const Basis& basis, int n, std::
 /// Returns `numbers` values in [0, 1] per corner.
 std::shared_ptr<reference::Volume> random_blockers(int numbers, int n, std::mt19937& random);
 
+/// A directional light, and a point light at a place that random surfaces have around them.
+extern const ClpvLight kSun, kPoint;
+
+/// Returns a light with its maps, whose texels have the depths [m] that `depth` returns one after
+/// the other. The maps show the box of `bounds`, but for those of another height than width.
+reference::MappedLight mapped_light(const ClpvLight& light, const Bounds& bounds, unsigned width,
+                                    unsigned height, const std::function<float()>& depth);
+inline const Bounds kWideBounds{{-30, -30, -30}, {30, 30, 30}};
+
 /// Returns a sun in the open and one that is blocked, a point light and a spot without maps, in a
 /// medium. Maps are empty or block everything, so that rounding decides no texel.
 std::vector<reference::MappedLight> lights_in(const ClpvMedium& medium);

@@ -158,19 +158,6 @@ namespace {
 constexpr unsigned kMapWidth = 24, kMapHeight = 20;
 constexpr float kMapReach = 20;  // [m]: range of depths in a map
 
-/// Independent random depths per texel, 1 of 3 empty, so that a wrong filter address causes an
-/// error.
-reference::ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
-  std::uniform_real_distribution<float> uniform(-0.5f, 1);
-  reference::ShadowMap map{view, {}};
-  for (unsigned texel = 0; texel < kMapWidth * kMapHeight; ++texel) {
-    map.depth.push_back(std::max(0.0f, kMapReach * uniform(random)));
-  }
-  return map;
-}
-
-const ClpvLight kSun{
-    {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, 0, {}, {}};
 /// Cone from full light at acos(0.9) to dark at acos(0.7).
 const ClpvLight kSpot{{6, 8, -1},
                       CLPV_LIGHT_SPOT,
@@ -182,17 +169,14 @@ const ClpvLight kSpot{{6, 8, -1},
                       0,
                       {},
                       {}};
-const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, 0, {}, {}};
 
-/// The sun's map is smaller than the camera's view: some surfaces lie on and beyond its edge.
+/// Independent random depths per texel, 1 of 3 empty, so that a wrong filter address causes an
+/// error. The sun's map is smaller than the camera's view: some surfaces lie on and beyond its
+/// edge.
 reference::MappedLight mapped(const ClpvLight& light, std::mt19937& random) {
-  const Bounds bounds{{-2, -2, -4}, {8, 8, 6}};
-  reference::MappedLight mapped{light, {}};
-  for (ClpvView view : shadow_views(light, bounds, kMapWidth)) {
-    view.height = kMapHeight;
-    mapped.maps.push_back(random_map(view, random));
-  }
-  return mapped;
+  std::uniform_real_distribution<float> uniform(-0.5f, 1);
+  return mapped_light(light, {{-2, -2, -4}, {8, 8, 6}}, kMapWidth, kMapHeight,
+                      [&] { return std::max(0.0f, kMapReach * uniform(random)); });
 }
 
 /// Surfaces, their indirect light, and lights of all kinds, in the order of kKinds.

@@ -106,27 +106,23 @@ void Volume::copy_from(Session& session, const Volume& from) {
 }
 
 void Volume::read_stored(Session& session, void* numbers) const {
-  if (format_.layout == Layout::image) {
-    session.timeline().wait([&] {
+  session.timeline().wait([&] {
+    if (format_.layout == Layout::image)
       session.queue().enqueueReadImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0,
                                        numbers);
-    });
-  } else {
-    session.timeline().wait(
-        [&] { session.queue().enqueueReadBuffer(buffer_.handle(), CL_TRUE, 0, bytes_, numbers); });
-  }
+    else
+      session.queue().enqueueReadBuffer(buffer_.handle(), CL_TRUE, 0, bytes_, numbers);
+  });
 }
 
 void Volume::write_stored(Session& session, const void* numbers) {
-  if (format_.layout == Layout::image) {
-    session.timeline().wait([&] {
+  session.timeline().wait([&] {
+    if (format_.layout == Layout::image)
       session.queue().enqueueWriteImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0,
                                         numbers);
-    });
-  } else {
-    session.timeline().wait(
-        [&] { session.queue().enqueueWriteBuffer(buffer_.handle(), CL_TRUE, 0, bytes_, numbers); });
-  }
+    else
+      session.queue().enqueueWriteBuffer(buffer_.handle(), CL_TRUE, 0, bytes_, numbers);
+  });
 }
 
 std::vector<float> Volume::read(Session& session) const {

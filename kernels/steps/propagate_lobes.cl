@@ -16,7 +16,7 @@
 // A work-item computes one cell in all channels. Normals and links are read from memory, so that
 // compilers cannot fold them.
 //
-// From the host (host/pipeline/steps/run_time_lobes.cpp): CLPV_EVALUATE_AT_RUN_TIME; CLPV_UNIT_FLUX
+// From the host (host/pipeline/steps/propagate.cpp): CLPV_EVALUATE_AT_RUN_TIME; CLPV_UNIT_FLUX
 // 1: lobes are scaled to the exact flux; and the literals of face_flux.h and basis/lobe.h.
 #include "basis/lobe.h"
 #include "steps/face_flux.h"

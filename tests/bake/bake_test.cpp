@@ -16,7 +16,6 @@
 #include <sstream>
 
 #include "bake/ktx2.hpp"
-#include "bake/probe_check.hpp"
 #include "cli/bake_parts.hpp"
 #include "options/scene_options.hpp"
 #include "pipeline/frame/frame.hpp"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Formats of light probes against closed forms, and their textures looked up as engines do.
-#include "bake/probe_formats.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +9,6 @@
 
 #include "bake/bake.hpp"
 #include "bake/ktx2.hpp"
-#include "bake/probe_check.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/ktx2_reader.hpp"
 #include "tests/support/sphere_quadrature.hpp"

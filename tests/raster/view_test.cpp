@@ -10,7 +10,7 @@
 
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "pipeline/raster/cells.hpp"
+#include "pipeline/raster/paint.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"

@@ -192,8 +192,7 @@ void Frame::update(const SceneCamera& camera) {
 const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels) {
   prepare_near(light_step_);
   enqueue_light(camera);
-  if (!given_) given_.emplace(session_);
-  const Surface& surface = given_->take(
+  const Surface& surface = given_.take(
       camera_view(camera, static_cast<int>(pixels.width), static_cast<int>(pixels.height)), pixels);
   session_.reserve(given_irradiance_, std::size_t{pixels.width} * pixels.height * sizeof(cl_float4),
                    "irradiance on a given surface");

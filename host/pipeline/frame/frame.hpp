@@ -142,8 +142,8 @@ class Frame {
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
-  std::optional<Kernel> radiance_;     ///< kernel of radiance_at(), built when it is first called
-  std::optional<GivenSurface> given_;  ///< surface of light(), built when it is first called
+  std::optional<Kernel> radiance_;  ///< kernel of radiance_at(), built when it is first called
+  GivenSurface given_{session_};    ///< surface of light()
   Buffer given_irradiance_;
   Cached near_hits_;   ///< hits of near_
   Buffer irradiance_;  ///< float4 per pixel, like image_

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <glm/glm.hpp>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,24 @@ namespace clpv {
 /// sets their alpha to 1.
 void paint_sky(const Sky& sky, const std::optional<ClpvMedium>& medium, const ClpvView& view,
                std::vector<float>& image);
+
+// View `cells`: the cells of the finest cascade as small spheres, each shaded by the irradiance
+// that its light gives surfaces of every direction, as in views of light probes.
+
+constexpr double kSphereRadius = 0.2;  // [cells]
+
+/// Visible points of the spheres: pixel, centre of the cell [m], and unit normal of the sphere
+/// there.
+struct CellSpheres {
+  std::vector<std::size_t> pixels;
+  std::vector<glm::dvec3> centres, normals;
+};
+
+/// Finds the first sphere before the surface in each pixel of a perspective view. `depth` [m], row
+/// 0 first; 0 without a surface. The cells next to the eye have no sphere, since it would cover the
+/// view.
+CellSpheres visible_spheres(const ClpvView& view, const std::vector<float>& depth,
+                            const ClpvGrid& grid);
 
 /// Irradiance [W/m^2] at points: position [m] and unit normal of each.
 using IrradianceAt = std::function<std::vector<glm::vec4>(std::vector<glm::vec4> positions,

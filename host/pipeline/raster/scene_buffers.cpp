@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernels/shared/raster.h"
+#include "scene/emission.hpp"
 #include "scene/mip_chain.hpp"
 #include "support/error.hpp"
 
@@ -118,10 +119,6 @@ bool is_textured(const ClpvMaterial& material) {
   return material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
 }
 
-bool is_emissive(const ClpvMaterial& material) {
-  return std::any_of(material.emissive, material.emissive + 3, [](float e) { return e != 0; });
-}
-
 /// Assigns the white texture to materials without one, so that kernels need no test.
 std::vector<ClpvMaterial> with_textures(std::vector<ClpvMaterial> materials, unsigned white) {
   for (ClpvMaterial& material : materials) {
@@ -129,17 +126,6 @@ std::vector<ClpvMaterial> with_textures(std::vector<ClpvMaterial> materials, uns
     if (material.emissive_texture == CLPV_NO_TEXTURE) material.emissive_texture = white;
   }
   return materials;
-}
-
-Bounds bounds_of_all(const std::vector<Vertex>& vertices) {
-  if (vertices.empty()) return {};
-  glm::vec3 lower(std::numeric_limits<float>::max()), upper(std::numeric_limits<float>::lowest());
-  for (const Vertex& v : vertices) {
-    const glm::vec3 p(v.position[0], v.position[1], v.position[2]);
-    lower = glm::min(lower, p);
-    upper = glm::max(upper, p);
-  }
-  return {lower, upper};
 }
 
 }  // namespace
@@ -157,10 +143,11 @@ SceneBuffers upload_scene(Session& session, const SceneData& scene) {
   buffers.triangle_count = scene.triangles.size();
   buffers.textured = std::any_of(scene.materials.begin(), scene.materials.end(), is_textured);
   buffers.coloured = is_coloured(scene.vertices);
-  buffers.emissive = std::any_of(scene.materials.begin(), scene.materials.end(), is_emissive);
+  buffers.emissive = std::ranges::any_of(
+      scene.materials, [](const ClpvMaterial& material) { return emits(material); });
   buffers.masked = std::any_of(scene.materials.begin(), scene.materials.end(), is_masked);
   buffers.medium = scene.medium.has_value();
-  buffers.bounds = bounds_of_all(scene.vertices);
+  buffers.bounds = bounds_of(scene.vertices);
   buffers.clusters = std::make_shared<TriangleClusters>(scene);
   return buffers;
 }
@@ -176,7 +163,7 @@ void upload_moving(Session& session, const SceneData& scene, SceneBuffers& buffe
                   std::span(scene.triangles).subspan(part.first_triangle, part.triangles),
                   part.first_triangle);
   }
-  buffers.bounds = bounds_of_all(scene.vertices);
+  buffers.bounds = bounds_of(scene.vertices);
 }
 
 }  // namespace clpv

@@ -42,6 +42,31 @@ Literals constant_lobes(const FaceTransport& scheme) {
 
 }  // namespace
 
+RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport& transport,
+                           TableStorage storage)
+    : table_(session, basis, transport.lobes, storage, TableUse::lobes),
+      functions_(session, basis, transport.lobes, storage, TableUse::functions),
+      literals_(lobe_literals(basis, transport.lobes)) {
+  // Integrals over faces are constants.
+  literals_.flag("CLPV_EVALUATE_AT_RUN_TIME", transport.kind == TransportKind::sampled)
+      .flag("CLPV_UNIT_FLUX", transport.unit_flux_lobes)
+      .flag("CLPV_FROM_TABLE", functions_.exists());
+  (table_.exists() ? table_ : functions_).add_literals(literals_);
+  std::vector<glm::vec4> normals, links;
+  for (const Face& face : std::get<FaceTransport>(transport.scheme).faces) {
+    normals.emplace_back(glm::dvec3(face.normal), 0);
+    links.emplace_back(face.direction, face.solid_angle);
+  }
+  normals_ = session.upload(normals, "normals of faces");
+  links_ = session.upload(links, "links through faces");
+}
+
+void RunTimeLobes::add_to(Kernel& step) const {
+  step.add(normals_, links_);
+  table_.add_to(step);
+  functions_.add_to(step);
+}
+
 Propagator::Propagator(Session& session, const Basis& basis, const Transport& transport,
                        const PropagateOptions& options)
     : session_(session),

@@ -11,7 +11,7 @@
 #include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
-#include "pipeline/steps/run_time_lobes.hpp"
+#include "pipeline/inject/lookup_table.hpp"
 #include "pipeline/steps/stencil.hpp"
 #include "pipeline/steps/transmittance.hpp"
 #include "volume/accumulator.hpp"
@@ -26,6 +26,26 @@ struct PropagateVolumes {
   /// Blocking potential at the cells' corners; null: nothing blocks.
   const Volume* geometry = nullptr;
   Volume& accumulated;  ///< output: injected field plus the output of every step [W/sr]
+};
+
+/// Propagation lobes computed in the kernel, 30 per cell and step, as in the paper
+/// (LobeTime::kernel): arguments and literals for kernels/steps/propagate_lobes.cl. Slow, with the
+/// same result as constant lobes.
+class RunTimeLobes {
+ public:
+  /// The transport has lobes. Throws as LookupTable does.
+  RunTimeLobes(Session& session, const Basis& basis, const Transport& transport,
+               TableStorage storage);
+
+  const Literals& literals() const { return literals_; }
+  /// Sets the last arguments of a step.
+  void add_to(Kernel& step) const;
+
+ private:
+  LookupTable table_, functions_;
+  Literals literals_;
+  Buffer normals_;
+  Buffer links_;  ///< direction of the link through each face, and the face's solid angle
 };
 
 /// Runs the propagation steps of one basis and transport, for volumes of one grid size.
