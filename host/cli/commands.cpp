@@ -227,6 +227,7 @@ int run_program(int argc, const char* const* argv, const Additions& additions) {
   Shared shared;
   shared.additions = additions;
   add_commands(app, shared);
+  log_to_stderr(LogLevel::warning);  // until options set another level
   try {
     const int code = parse_and_run(app, argc, argv);
     flush_data();

@@ -57,6 +57,8 @@ void add_display_options(CLI::App& command, DisplayRequest& display) {
       "transparent background of a PNG (default: black)");
 }
 
+constexpr float kFaint = 15;  // [EV]; daylight in W/m^2 has -9 to 0, lamps in a room up to 6
+
 void DisplayRequest::resolve(const SceneData& scene, bool shown,
                              const std::function<Image()>& full) {
   if (exposure && exposure != scene.exposure && !shown && full)
@@ -66,6 +68,11 @@ void DisplayRequest::resolve(const SceneData& scene, bool shown,
   automatic = true;
   exposure = automatic_exposure(full());
   log_info("exposure {:.2f} EV (automatic; --exposure sets another)", *exposure);
+  if (*exposure == 0)  // of an image without a lit pixel
+    log_warning("the picture is black: no light reaches a surface that the camera sees");
+  else if (*exposure > kFaint)
+    log_warning(
+        "almost no light reaches what the camera sees: the picture may show leaks and rounding");
 }
 
 Image DisplayRequest::displayed(const Image& image, Show view) const {
@@ -207,8 +214,7 @@ void warn_of_unreached(Session& session, const Frame& frame, const std::string& 
   if (share <= kFewUnreached) return;
   log_warning(
       "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect "
-      "light, and a sky shines in where they end; a larger --cascade-size or more --cascades reach "
-      "farther",
+      "light but a sky's; a larger --cascade-size or more --cascades reach farther",
       camera, 100 * share);
 }
 

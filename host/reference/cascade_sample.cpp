@@ -25,6 +25,7 @@ LinearSample linear_sample(double at, int n) {
   return {lower, std::min(lower + 1, n - 1), p - lower};
 }
 
+const double kEvenLight = 2 * std::sqrt(std::numbers::pi);  // coefficient of band 0
 constexpr int kPoints = 4;                       // visibility points per cube along each axis
 constexpr double kMinVisibleShare = 1.0 / 64.0;  // by weight; below it, all cells count
 
@@ -89,6 +90,27 @@ std::optional<glm::dvec3> clear_place(const glm::dvec3& at, const glm::dvec3& cl
   return glm::clamp(at, 0.0, n - 1.0) + clear * std::min(1.0, kMost / length);
 }
 
+/// Where the sample point next to clear_place() towards the end of the way, along each axis, is the
+/// nearest.
+std::optional<glm::dvec3> next_place(const glm::dvec3& at, const glm::dvec3& clear, int n) {
+  const std::optional<glm::dvec3> place = clear_place(at, clear, n);
+  if (!place) return std::nullopt;
+  return *place + 0.5 / double{kPoints} * glm::sign(clear);
+}
+
+/// Makes the sample one of the cells that a sample point sees, if it sees any.
+void use_point(TrilinearSample& sample, const ClearPoint& point, int n) {
+  if (point.seen == 0) return;
+  sample = trilinear_sample(
+      glm::dvec3(point.cube) + (glm::dvec3(point.place) + 0.5) / double{kPoints}, n);
+  double total = 0;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    sample.weight[corner] *= point.seen >> corner & 1;
+    total += sample.weight[corner];
+  }
+  for (double& weight : sample.weight) weight /= total;
+}
+
 /// The cells that it sees as cells of `cube`.
 unsigned cells_from(const ClearPoint& point, const glm::ivec3& cube) {
   unsigned cells = 0;
@@ -134,7 +156,7 @@ bool rounding_decides(const glm::dvec3& at, int n) {
 
 bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n) {
   const std::optional<glm::dvec3> place = clear_place(at, clear, n);
-  return place && rounding_decides(*place, n);
+  return place && (rounding_decides(*place, n) || rounding_decides(*next_place(at, clear, n), n));
 }
 
 bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint8_t* occluded) {
@@ -143,30 +165,35 @@ bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint
   return std::max({apart.x, apart.y, apart.z}) > 1 || (p.seen & cells_from(q, p.cube)) != 0;
 }
 
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
-                      const std::uint8_t* occluded) {
+namespace {
+
+TrilinearSample visible_sample(const glm::dvec3& at, const glm::dvec3& clear, int n,
+                               const std::uint8_t* occluded, const Volume& light) {
+  TrilinearSample sample = trilinear_sample(at, n);
   const glm::ivec3 cube = sample.cell[0];
   const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
   const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
   std::optional<ClearPoint> point;
   if (const auto place = clear_place(at, clear, n)) point = sample_point(*place, n, occluded);
-  std::array<double, 8> visible = visible_shares(t, occluded + number, clear_cells(point, cube));
+  const std::array<double, 8> visible =
+      visible_shares(t, occluded + number, clear_cells(point, cube));
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner)
     total += visible[corner] * sample.weight[corner];
-  if (total <= kMinVisibleShare) {
-    if (!point || point->seen == 0) return;
-    sample = trilinear_sample(
-        glm::dvec3(point->cube) + (glm::dvec3(point->place) + 0.5) / double{kPoints}, n);
-    total = 0;
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      visible[corner] = point->seen >> corner & 1;
-      total += visible[corner] * sample.weight[corner];
-    }
+  if (total > kMinVisibleShare) {
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      sample.weight[corner] *= visible[corner] / total;
+  } else if (point) {
+    use_point(sample, *point, n);
   }
-  for (std::size_t corner = 0; corner < 8; ++corner)
-    sample.weight[corner] *= visible[corner] / total;
+  constexpr double kLeastOpen = 0.5;  // least_open of kernels/gather/gather_packed.h
+  const auto next = next_place(at, clear, n);
+  if (next && light.channels > 3 && interpolated(light, 3, sample)[0] < kLeastOpen * kEvenLight)
+    use_point(sample, sample_point(*next, n, occluded), n);
+  return sample;
 }
+
+}  // namespace
 
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample) {
   std::vector<double> c(volume.coefficients, 0.0);
@@ -188,6 +215,13 @@ double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double 
   return std::clamp(distance / blend_cells, 0.0, 1.0);
 }
 
+TrilinearSample sample_of(const GatherOptions& options, const Cascade& cascade,
+                          const glm::dvec3& at, const glm::dvec3& clear) {
+  if (options.gather != Gathering::visible) return trilinear_sample(at, options.grid);
+  return visible_sample(at, clear / double{cascade.grid.cell}, options.grid, cascade.occluded,
+                        *cascade.accumulated);
+}
+
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset,
                              const glm::dvec3& lift, const glm::dvec3& clear) {
@@ -199,9 +233,7 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
     const double share = share_of(position, grid, options.grid, options.blend_cells);
     const glm::dvec3 at =
         (position - vector(grid.origin)) / double{grid.cell} + offset * lift - 0.5;
-    TrilinearSample sample = trilinear_sample(at, options.grid);
-    if (options.gather == Gathering::visible)
-      apply_visibility(sample, at, clear / double{grid.cell}, options.grid, cascade.occluded);
+    const TrilinearSample sample = sample_of(options, cascade, at, clear);
     for (int channel = 0; channel < 4 && share * rest > 0; ++channel) {
       const double weight = share * rest / (channel < 3 ? double{grid.cell} * grid.cell : 1);
       const std::vector<double> c = interpolated(*cascade.accumulated, channel, sample);
@@ -209,7 +241,7 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
     }
     rest *= 1 - share;
   }
-  field[3][0] += rest * 2 * std::sqrt(std::numbers::pi);
+  field[3][0] += rest * kEvenLight;
   return field;
 }
 

@@ -27,12 +27,14 @@ struct TrilinearSample {
 /// each axis.
 TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 
-/// Multiplies weights by the visible shares of the cells from `at`, and normalises them. `clear`: a
-/// way [cells] on which nothing stands, or 0. Only those sample points count that see a cell which
-/// the sample point 0.85 cells along it, or at its end, sees, too. Where too little is visible, the
-/// cells count that this point sees, or all where it sees none or without such a way.
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
-                      const std::uint8_t* occluded);
+/// Returns the cells that light `at` [cells from the first centre] of a cascade: by trilinear
+/// weights times their visible shares, normalised. `clear`: a way [m] on which nothing stands, or
+/// 0. Only those sample points count that see a cell which the sample point 0.85 cells along it, or
+/// at its end, sees, too. Where too little is visible, the cells count that this point sees, or all
+/// where it sees none or without such a way; where the white furnace is dark, those that the next
+/// sample point towards the end sees. Trilinear weights alone if options.gather is Gathering::all.
+TrilinearSample sample_of(const GatherOptions& options, const Cascade& cascade,
+                          const glm::dvec3& at, const glm::dvec3& clear);
 
 /// Returns true if rounding decides which sample point lies at `at` [cells], or along `clear`.
 bool rounding_decides(const glm::dvec3& at, int n);
@@ -56,7 +58,7 @@ double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double 
 using RadianceField = std::array<std::vector<double>, 4>;
 
 /// Returns coefficients at position + offset s lift of each cascade, s its cell, blended by the
-/// cascades' shares at `position` [m]. `clear`: apply_visibility().
+/// cascades' shares at `position` [m]. `clear`: sample_of().
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
                              const glm::dvec3& lift = glm::dvec3(0),

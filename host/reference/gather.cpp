@@ -50,9 +50,7 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     // The first cell's centre is at 0.5.
     const glm::dvec3 point = at + options.gather_offset * lift - 0.5;
     const double area = double{grid.cell} * grid.cell;
-    TrilinearSample sample = trilinear_sample(point, options.grid);
-    if (options.gather == Gathering::visible)
-      apply_visibility(sample, point, clear / double{grid.cell}, options.grid, cascade.occluded);
+    const TrilinearSample sample = sample_of(options, cascade, point, clear);
     e += share * rest / glm::dvec4(area, area, area, 1) *
          irradiance(*cascade.accumulated, sample, weights);
     rest *= 1 - share;

@@ -25,7 +25,7 @@ struct Cascade {
 };
 
 /// Returns the irradiance [W/m^2] in red, green, blue of a surface at `position` [m] with unit
-/// `normal`. `cascades`: finest first. `clear`: apply_visibility().
+/// `normal`. `cascades`: finest first. `clear`: sample_of().
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
                   const glm::dvec3& normal, const glm::dvec3& lift,

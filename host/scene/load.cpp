@@ -141,7 +141,9 @@ SceneLight added_sun() {
 
 const std::string kInMemory = "(in memory)";  // name and path of a scene without a file
 const std::string kNoTriangles = "the model has no triangles",
-                  kAddedCamera = "no camera: added one outside (options eye, target: another)",
+                  kAddedCamera =
+                      "no camera: added one outside, which sees a closed room's outer walls "
+                      "(options eye, target: another)",
                   kAddedSun = fmt::format("no light: added a sun of {} lux", kSunIlluminance);
 
 }  // namespace

@@ -32,8 +32,10 @@ __kernel void gather(const ClpvView view, __global const Place* places,
   Gathering g;
   CLPV_LOAD_SURFACES(view, p, places, normals, &g.surfaces);
   begin_gathering(view, &g CLPV_PASS_G);
-  for (uint c = 0; c < cascades; ++c)
-    add_cascade(&g, grids + c, packed_cascade(c CLPV_PASS_VOLUMES));
+  for (uint c = 0; c < cascades; ++c) {
+    const float area = CLPV_FACE_TRANSPORT ? 0.0f : grids[c].cell * grids[c].cell;
+    add_cascade(&g, grids + c, packed_cascade(c, area, unit CLPV_PASS_VOLUMES));
+  }
   float outside[W];  // outside all cascades the furnace is white
   store_lanes(g.remaining, outside);
   for (uint i = 0; i < p.count; ++i) {

@@ -8,7 +8,9 @@
 // Where a way is known on which nothing stands, such as that to the eye, only those sample points
 // count that see a cell which the sample point 0.85 cells along it, or at its end, sees, too: no
 // point behind a wall beside the surface does. If fewer than 1/64 of the weights remain, the cells
-// count that this point sees, or all eight where it sees none or without such a way.
+// count that this point sees, or all eight where it sees none or without such a way. Where the
+// white furnace is less than half as bright as in open space, as in a solid wall, the cells count
+// that the next sample point towards the end of the way along each axis sees.
 // docs/method.md, 'Gathering'.
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b f)(r g b f). The eight
 // cells about a point are read as whole vectors. f is swept light of the white furnace, 0 after
@@ -21,6 +23,9 @@
 #include "gather/cascades.h"
 #include "volume/coefficients.h"
 #include "volume/seen_cells.h"
+
+// 2 sqrt(pi): coefficient of band 0 of even light.
+#define CLPV_EVEN_LIGHT 3.5449077018f
 
 // Steps from a record to its neighbours; 0 in a grid of one cell.
 enum {
@@ -39,7 +44,16 @@ typedef struct {
 typedef struct {
   __global const float8* cells;
   __global const uchar* occluded;
+  float open;  // band 0 of f in open space; 0 without f
 } PackedCascade;
+
+// Sample points of visibility along ways, of W points.
+typedef struct {
+  int cube[W];  // negative: not known
+  // From bit 6 on a point of that cube; in bits 0, 2 and 4 the steps to it from the surface's cube,
+  // each plus 1.
+  int point[W];
+} ClearPoints;
 
 // For each of W points: index of the lowest of the eight cells about it, and the point's position
 // between their centres, in [0, 1]; with CLPV_VISIBLE the same for the sample points of
@@ -49,28 +63,36 @@ typedef struct {
   float x[W], y[W], z[W];
   int visibility_point[W];
   float visibility_x[W], visibility_y[W], visibility_z[W];
-  int clear_cube[W];  // negative: not known
-  // From bit 6 on a point of that cube; in bits 0, 2 and 4 the steps to it from the surface's cube,
-  // each plus 1.
-  int clear_point[W];
+  ClearPoints clear, next;
 } SamplePoints;
 
-// Finds sample points 0.85 cells along `clear` from p [cells], or at its end. (x, y, z): p's cube.
-CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
-                                   const Vec clear, SamplePoints* points) {
-  const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.85f;  // below 1: not two cubes away
-  const realW square = vec_dot(clear, clear), scale =
-      square > (realW)(most * most) ? 4.0f * most * rsqrt(square) : (realW)(4.0f);
+// Stores the sample points at q [quarters of cells]. (x, y, z): the surfaces' cubes.
+CLPV_INLINE void store_clear_points(const Vec q, const intW x, const intW y, const intW z,
+                                    const intW known, ClearPoints* points) {
+  const float past = 4.0f * (float)(CLPV_GRID - 1);
   const intW highest = (intW)(CLPV_GRID > 1 ? 4 * CLPV_GRID - 5 : 0);
-  const intW a = min(to_intW(clamp_to(fma(clear.x, scale, 4.0f * p.x), past)), highest),
-             b = min(to_intW(clamp_to(fma(clear.y, scale, 4.0f * p.y), past)), highest),
-             c = min(to_intW(clamp_to(fma(clear.z, scale, 4.0f * p.z), past)), highest);
+  const intW a = min(to_intW(clamp_to(q.x, past)), highest),
+             b = min(to_intW(clamp_to(q.y, past)), highest),
+             c = min(to_intW(clamp_to(q.z, past)), highest);
   const intW cube = ((c >> 2) * CLPV_GRID + (b >> 2)) * CLPV_GRID + (a >> 2);
   const intW point = ((c & 3) * 4 + (b & 3)) * 4 + (a & 3);
   const intW steps = ((a >> 2) - x) + 4 * ((b >> 2) - y) + 16 * ((c >> 2) - z) + 21;
+  store_lanes(known ? cube : (intW)(-1), points->cube);
+  store_lanes(64 * point + steps, points->point);
+}
+
+// Finds the sample points nearest to the place 0.85 cells along `clear` from p [cells], or at its
+// end, and those next to that place towards the end, along each axis. (x, y, z): p's cube.
+CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
+                                   const Vec clear, SamplePoints* points) {
+  const float most = 0.85f;  // below 1: not two cubes away
+  const realW square = vec_dot(clear, clear), scale =
+      square > (realW)(most * most) ? 4.0f * most * rsqrt(square) : (realW)(4.0f);
   const intW known = (clear.x != ZERO) | (clear.y != ZERO) | (clear.z != ZERO);
-  store_lanes(known ? cube : (intW)(-1), points->clear_cube);
-  store_lanes(64 * point + steps, points->clear_point);
+  const Vec q = vec_add_scaled(vec_times(p, (realW)(4.0f)), scale, clear);
+  store_clear_points(q, x, y, z, known, &points->clear);
+  const Vec towards = vec(sign(clear.x), sign(clear.y), sign(clear.z));
+  store_clear_points(vec_add_scaled(q, (realW)(0.5f), towards), x, y, z, known, &points->next);
 }
 
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
@@ -114,12 +136,18 @@ __constant const float min_visible = 1.0f / 64.0f;
 
 enum { CLPV_ALL_POINTS = 511 };  // cells that none lacks: every sample point counts
 
+// Cells, a bit each, that a point along a way sees.
+static inline uint cells_seen(__global const uchar* occluded, const ClearPoints* points,
+                              const int i) {
+  return ~(uint)occluded[(size_t)points->cube[i] * 64 + (points->point[i] >> 6)] & 255u;
+}
+
 // Cells, a bit each, of which a sample point must see one to count.
-CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* points,
+CLPV_INLINE int clear_cells(__global const uchar* occluded, const ClearPoints* points,
                             const int i) {
-  const int cube = points->clear_cube[i], point = points->clear_point[i];
-  if (cube < 0) return CLPV_ALL_POINTS;
-  const uint seen = ~(uint)occluded[(size_t)cube * 64 + (point >> 6)] & 255u;
+  const int point = points->point[i];
+  if (points->cube[i] < 0) return CLPV_ALL_POINTS;
+  const uint seen = cells_seen(occluded, points, i);
   if (seen == 0) return CLPV_ALL_POINTS;
   return (int)cells_from(seen, (point & 3) - 1, (point >> 2 & 3) - 1, (point >> 4 & 3) - 1);
 }
@@ -148,19 +176,19 @@ CLPV_INLINE float sum_weights(const float8 weights) {
   return four.x + four.y + four.z + four.w;
 }
 
-// Weights of the cells that the point along `clear` sees, trilinear there, and their first cell;
-// returns the factor that normalises them. If it sees none, or is not known, nothing changes.
-CLPV_INLINE float use_clear_point(const PackedCascade cascade, const SamplePoints* points,
+// Weights of the cells that a point along a way sees, trilinear there, and their first cell;
+// returns the factor that normalises them. If it sees none, or is not known, nothing changes, and
+// the factor is 0.
+CLPV_INLINE float use_clear_point(const PackedCascade cascade, const ClearPoints* points,
                                   const int i, float8* weights, int* number) {
-  const int cube = points->clear_cube[i], point = points->clear_point[i] >> 6;
-  if (cube < 0) return 1.0f;
-  const int seen = ~(int)cascade.occluded[(size_t)cube * 64 + point] & 255;
-  if (seen == 0) return 1.0f;
+  if (points->cube[i] < 0) return 0.0f;
+  const int seen = (int)cells_seen(cascade.occluded, points, i), point = points->point[i] >> 6;
+  if (seen == 0) return 0.0f;
   const float8 from = corner_weights(0.25f * (float)(point & 3) + 0.125f,
                                      0.25f * (float)(point >> 2 & 3) + 0.125f,
                                      0.25f * (float)(point >> 4) + 0.125f);
   *weights = ((int8)(seen) & cell_bits) != 0 ? from : (float8)(0.0f);
-  *number = cube;
+  *number = points->cube[i];
   return 1.0f / sum_weights(*weights);
 }
 
@@ -173,18 +201,22 @@ CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoin
   const float8 from =
       corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
   const float8 visible =
-      *weights * visible_shares(at, from, clear_cells(cascade.occluded, points, i));
+      *weights * visible_shares(at, from, clear_cells(cascade.occluded, &points->clear, i));
   const float total = sum_weights(visible);
-  if (!(total > min_visible)) return use_clear_point(cascade, points, i, weights, number);
+  if (!(total > min_visible)) {
+    const float factor = use_clear_point(cascade, &points->clear, i, weights, number);
+    return factor > 0.0f ? factor : 1.0f;
+  }
   *weights = visible;
   return 1.0f / total;
 }
 
-CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i,
-                               Sampled* r) {
-  int number = points->number[i];
-  float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
-  const float scale = CLPV_VISIBLE ? apply_visibility(cascade, points, i, &w, &number) : 1.0f;
+// Least brightness of the white furnace, of that in open space, for which a place is not in a wall.
+__constant const float least_open = 0.5f;
+
+// Sum of the eight records from a cell on.
+CLPV_INLINE void add_records(const PackedCascade cascade, const int number, const float8 w,
+                             Sampled* r) {
   __global const float8* v = cascade.cells + (size_t)number * CLPV_PAIRS;
 #pragma unroll
   for (int j = 0; j < CLPV_PAIRS; ++j)
@@ -192,6 +224,21 @@ CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* 
                  w.s3 * v[j + CLPV_DX + CLPV_DY] + w.s4 * v[j + CLPV_DZ] +
                  w.s5 * v[j + CLPV_DX + CLPV_DZ] + w.s6 * v[j + CLPV_DY + CLPV_DZ] +
                  w.s7 * v[j + CLPV_DX + CLPV_DY + CLPV_DZ];
+}
+
+CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i,
+                               Sampled* r) {
+  int number = points->number[i];
+  float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
+  float scale = CLPV_VISIBLE ? apply_visibility(cascade, points, i, &w, &number) : 1.0f;
+  add_records(cascade, number, w, r);
+  if (CLPV_VISIBLE && scale * r->pair[0].s3 < least_open * cascade.open) {
+    const float factor = use_clear_point(cascade, &points->next, i, &w, &number);
+    if (factor > 0.0f) {
+      scale = factor;
+      add_records(cascade, number, w, r);
+    }
+  }
   return scale;
 }
 
@@ -237,8 +284,10 @@ CLPV_INLINE float4 over_furnace(const float4 light, const float white) {
 #define CLPV_OCCLUDED_OF(c) 0  // not read
 #endif
 
-CLPV_INLINE PackedCascade packed_cascade(const uint c CLPV_AND_VOLUMES) {
+// Cascade c; `area` [m^2]: s^2, 0 without f; `unit` [W/sr]: of a stored 1.
+CLPV_INLINE PackedCascade packed_cascade(const uint c, const float area,
+                                         const float unit CLPV_AND_VOLUMES) {
   const PackedCascade cascade = {packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS,
-                                 CLPV_OCCLUDED_OF(c)};
+                                 CLPV_OCCLUDED_OF(c), CLPV_EVEN_LIGHT * area / unit};
   return cascade;
 }

@@ -20,9 +20,6 @@
   __global const ClpvGrid *grids, const uint cascades, const float unit CLPV_AND_VOLUMES
 #define CLPV_PASS_RADIANCE grids, cascades, unit CLPV_PASS_VOLUMES
 
-// 2 sqrt(pi): coefficient of band 0 of even light.
-#define CLPV_EVEN_LIGHT 3.5449077018f
-
 // C and, as fourth numbers, F at W points.
 typedef struct {
   Sampled at[W];
@@ -52,13 +49,14 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
   for (uint c = 0; c < cascades; ++c) {
     const ClpvGrid grid = grids[c];
     const realW share = cascade_share(grid, position);
-    const realW weight = share * remaining * (1.0f / (grid.cell * grid.cell));
+    const float area = grid.cell * grid.cell;
+    const realW weight = share * remaining * (1.0f / area);
     remaining *= 1.0f - share;
     if (no_lane(weight > ZERO)) continue;
     SamplePoints points;
     find_sample_points(find_cascade_points(grid, position, offset, lift),
                        vec_times(clear, (realW)(1.0f / grid.cell)), &points);
-    add_field(packed_cascade(c CLPV_PASS_VOLUMES), &points, weight, field);
+    add_field(packed_cascade(c, area, unit CLPV_PASS_VOLUMES), &points, weight, field);
   }
   float outside[W];
   store_lanes(remaining * (CLPV_EVEN_LIGHT / unit), outside);

@@ -36,12 +36,14 @@ constexpr int kWidth = 120, kHeight = 68;
 struct Room {
   float degrees;
   bool skew = false;   ///< about a skew axis, otherwise about y
-  bool sheet = false;  ///< walls of one sheet; otherwise of two, 0.5 m apart
+  bool sheet = false;  ///< walls of one sheet; otherwise of two
+  float wall = 0.5f;   ///< distance between the two sheets [m]
+  glm::vec3 shift{};   ///< of the room [m]
   glm::mat4 turn() const {
     return glm::rotate(glm::mat4(1), glm::radians(degrees),
                        skew ? glm::normalize(glm::vec3(0.4f, 0.8f, -0.45f)) : glm::vec3(0, 1, 0));
   }
-  glm::vec3 at(const glm::vec3& p) const { return glm::vec3(turn() * glm::vec4(p, 1)); }
+  glm::vec3 at(const glm::vec3& p) const { return shift + glm::vec3(turn() * glm::vec4(p, 1)); }
   glm::vec3 along(const glm::vec3& v) const { return glm::vec3(turn() * glm::vec4(v, 0)); }
 
   SceneData scene(float albedo, float emitted) const {
@@ -51,7 +53,7 @@ struct Room {
     add_box(scene, glm::vec3(-2), 4, material);
     if (!sheet) {
       const std::size_t inner = scene.triangles.size();
-      add_box(scene, glm::vec3(-2.5f), 5, material);
+      add_box(scene, glm::vec3(-2 - wall), 4 + 2 * wall, material);
       for (std::size_t t = inner; t < scene.triangles.size(); ++t)
         std::swap(scene.triangles[t].vertex[1], scene.triangles[t].vertex[2]);
       for (std::size_t v = scene.vertices.size() / 2; v < scene.vertices.size(); ++v)
@@ -194,6 +196,20 @@ TEST(LongTurnedRooms, ALampsRoomHasItsLight) {
       expect_lamp_room({.degrees = degrees, .sheet = sheet}, Bounces::one);
       expect_lamp_room({.degrees = degrees, .sheet = sheet}, Bounces::all);
     }
+  }
+}
+
+// Where cells' centres lie just before a wall, sample points of visibility beside its edges are
+// behind it, and so is the one towards an eye that looks along it.
+TEST(TurnedRooms, EdgesHaveNoDarkLinesWhereverWallsCutCells) {
+  for (const glm::vec3& shift : {glm::vec3(0.3f, 0.15f, 0.01f), glm::vec3(0.27f, 0.11f, 0),
+                                 glm::vec3(0.3f, 0.01f, 0.28f), glm::vec3(0.07f, 0.29f, 0.29f)}) {
+    const Room room{.degrees = 0, .wall = 0.3f, .shift = shift};
+    SceneData scene = room.scene(0.6f, 0);
+    scene.lights = {{"lamp", point_light(room.at({0.5f, 0.5f, 0.3f}), glm::vec3(5))}};
+    SceneCamera camera = camera_at(room.at({-1.7f, 0.1f, 1.6f}), {2.9f, -0.4f, -2.9f});
+    camera.vertical_fov = glm::radians(70.0f);
+    EXPECT_LE(lines(irradiance(scene, camera, Bounces::one)).dark, 0.02) << shift.x;
   }
 }
 
