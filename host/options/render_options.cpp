@@ -19,7 +19,7 @@ namespace {
 
 // Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
 constexpr double kLeastCells = 3;  // with fewer no light arrives
-constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxBounceSweeps = 64, kMaxTexels = 8192;
+constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxBounceSweeps = 16, kMaxTexels = 8192;
 // Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a
 // float's limits; the largest holds every scene (bounds::kCoordinate).
 constexpr double kMinMetres = 1e-6, kMaxMetres = 1e7;

@@ -26,7 +26,7 @@ struct SweptCascade {
   /// Bits of visibility_masks(), which close links; null: none.
   const std::vector<std::uint8_t>* occluded = nullptr;
   bool completed = true;  ///< harmonics are completed to clamped cosines (cosine_rest)
-  bool open = false;      ///< with `occluded`, links transmit all light or none
+  bool open = false;      ///< with `occluded`, links of bounces: the root of T, or none
 };
 
 /// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of

@@ -82,7 +82,7 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
 double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open, int n,
                   const glm::ivec3& cell, const glm::ivec3& side) {
   const bool closed = closed_link(occluded, n, cell, side);
-  if (open) return closed ? 0 : 1;
+  if (open) return closed ? 0 : std::sqrt(transmittance);
   if (!closed) return transmittance;
   if (!enclosed_centre(occluded, n, cell) && !enclosed_centre(occluded, n, cell + side)) return 0;
   constexpr double kWall = double{CLPV_WALL_TRANSMITTANCE};

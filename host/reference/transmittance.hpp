@@ -19,7 +19,7 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
 
 /// Returns the transmittance of a link into `cell` from `side` that transmits `transmittance` if it
 /// is open (kernels/sweep/closed_links.cl, sweep_links.cl). `occluded`: bits of visibility_masks(),
-/// n^3 cubes. `open`: it transmits all light, or none if it is closed.
+/// n^3 cubes. `open`: of a bounce; it transmits the root of T, or nothing if it is closed.
 double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open, int n,
                   const glm::ivec3& cell, const glm::ivec3& side);
 

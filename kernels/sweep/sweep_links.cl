@@ -6,7 +6,8 @@
 //   T = 0                       if the link is closed
 //   T = max(0, (T - w) / (1 - w))   instead of 0, if a centre at an end of the closed link is
 //                               enclosed; w: CLPV_WALL_TRANSMITTANCE
-// With `open`, for sweeps of bounces, T is 1 or, if the link is closed, 0.
+// With `open`, for sweeps of bounces, sqrt(T) or, if the link is closed, 0: light passes the two
+// sheets of a wall in two links.
 //
 // In:   blockers       geometry volume, samples at the cells' corners
 //       closed         closed pairs of centres in each cube between cells (closed_links.cl)
@@ -60,8 +61,8 @@ CLPV_INLINE Links close_links(Links links, __global const int* closed, const int
     const intW enclosed = (cubes[7] | neighbour) >> CLPV_ENCLOSED_BIT & bits;
     const float wall = CLPV_WALL_TRANSMITTANCE;
     const realW t = links.c[link], reduced = fmax((t - wall) * (1.0f / (1.0f - wall)), ZERO);
-    links.c[link] = to_realW(1 - bits);
-    if (!open) links.c[link] = links.c[link] * t + to_realW(enclosed) * reduced;
+    links.c[link] = to_realW(1 - bits) * (open ? sqrt(t) : t);
+    if (!open) links.c[link] += to_realW(enclosed) * reduced;
   }
   return links;
 }

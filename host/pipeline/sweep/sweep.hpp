@@ -45,7 +45,8 @@ class Sweeper {
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
   /// samples. `occluded`: bits of visibility_masks() for all cascades, from which closed links are
-  /// found; with them all other links of sweeps for bounces are open. An empty Buffer closes none.
+  /// found; with them other links of sweeps for bounces transmit the root of T. Empty: none is
+  /// closed.
   void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
