@@ -51,12 +51,6 @@ Volume emitted(const Basis& basis, const Volume& flux, const Volume& reflectors)
   return light;
 }
 
-/// A cascade as sweeps for incident flux take it: along 24 directions.
-SweptCascade along_24(SweptCascade cascade) {
-  cascade.parts = 1, cascade.completed = false, cascade.open = true;
-  return cascade;
-}
-
 /// Normal of the triangles of a face (kernels/sweep/bounce.cl). `share`, `area`: of all faces.
 glm::dvec3 face_normal(const std::vector<double>& share, const std::vector<double>& area,
                        int face) {
@@ -110,9 +104,8 @@ FaceFlux reflected_flux(const Volume& reflectance, const Volume& swept, const Vo
 
 /// light += R D in every cascade.
 void add_one_bounce(const Basis& basis, const Transport& transport,
-                    std::vector<SweptCascade> cascades,
+                    const std::vector<SweptCascade>& cascades,
                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
-  for (SweptCascade& cascade : cascades) cascade = along_24(cascade);
   const std::vector<Volume> swept = sweep(basis, transport, cascades);
   for (std::size_t c = 0; c < cascades.size(); ++c)
     inject_flux(basis, reflected_flux(*reflectors[c], swept[c], *reflectors[c]), *reflectors[c],
@@ -126,11 +119,10 @@ void add_all_bounces(const Basis& basis, const Transport& transport,
                      const std::vector<const Volume*>& reflectors, int sweeps,
                      std::vector<Volume>& light) {
   for (std::size_t c = cascades.size(); c-- > 0;) {
-    std::vector<SweptCascade> nested(cascades.begin() + static_cast<std::ptrdiff_t>(c),
-                                     cascades.end());
+    const std::vector<SweptCascade> nested(cascades.begin() + static_cast<std::ptrdiff_t>(c),
+                                           cascades.end());
     const Volume injected = light[c];
     const BounceSeries series = bounce_series(basis, transport, cascades[c], *reflectors[c]);
-    nested[0] = along_24(nested[0]);
     Volume before, after = sweep(basis, transport, nested)[0];
     for (int done = 1; done < sweeps; ++done) {
       before = after, light[c] = injected;
@@ -169,7 +161,7 @@ struct Sources {
   }
 };
 
-/// Bounces off surfaces and in a medium: each of `sweeps` sweeps along 24 directions is reflected
+/// Bounces off surfaces and in a medium: each of `sweeps` sweeps is reflected
 /// and scattered. A cascade's border has light of the coarser one's last sweep.
 Sources bounce_in_medium(const Basis& basis, const Transport& transport,
                          const std::vector<SweptCascade>& cascades,
@@ -180,12 +172,10 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
     swept.scattered.push_back(*cascade.scattered);
   }
   Sources result = swept;
-  std::vector<SweptCascade> few;
-  for (const SweptCascade& cascade : cascades) few.push_back(along_24(cascade));
   for (std::size_t c = cascades.size(); c-- > 0;) {
     for (int i = 0; i < sweeps; ++i) {
       swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
-      const Volume found = sweep(basis, transport, swept.of(few, c))[0];
+      const Volume found = sweep(basis, transport, swept.of(cascades, c))[0];
       result.light[c] = *cascades[c].injected;
       inject_flux(basis, reflected_flux(*reflectors[c], found, *reflectors[c]), *reflectors[c],
                   result.light[c]);
@@ -203,9 +193,9 @@ BounceSeries bounce_series(const Basis& basis, const Transport& transport,
   // R X, X the incident flux while each face emits `flux`.
   const auto returned = [&](const Volume& flux) {
     const Volume light = emitted(basis, flux, reflectors);
-    SweptCascade few = along_24(cascade);
-    few.injected = &light;
-    const Volume swept = sweep(basis, transport, {few})[0];
+    SweptCascade emitting = cascade;
+    emitting.injected = &light;
+    const Volume swept = sweep(basis, transport, {emitting})[0];
     const FaceFlux leaving = reflected_flux(reflectors, swept, reflectors);
     Volume reflected = reflectors;
     for_each_cell(flux.n, [&](const glm::ivec3& p) {
@@ -277,11 +267,11 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
   std::vector<Volume> normalised;
   for (std::size_t c = 0; c < cascades.size(); ++c) {
     const auto first = static_cast<std::ptrdiff_t>(c);
-    std::vector<SweptCascade> nested(cascades.begin() + first, cascades.end());
+    const std::vector<SweptCascade> nested(cascades.begin() + first, cascades.end());
     const bool all = bounces == Bounces::all && cascades[c].scattered == nullptr;
     std::vector<const Volume*> emitting(white.begin() + first, white.end());
     for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i)
-      nested[i] = along_24(nested[i]), emitting[i] = reflectors[c + i];
+      emitting[i] = reflectors[c + i];
     const Volume even = furnace(basis, transport, nested, emitting, most_white)[0];
     const FaceFlux incident = incident_flux_of(even, *reflectors[c]);
     Volume& result = normalised.emplace_back(*reflectors[c]);

@@ -42,7 +42,7 @@ class Sweep {
         boundary_(boundary),
         n_(cascade.grid.n),
         means_(part_means(basis, cascade.parts)),
-        rest_(cascade.completed ? cosine_rest(basis, means_, cascade.parts) : std::nullopt) {
+        rest_(cosine_rest(basis, means_, cascade.parts)) {
     set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
@@ -135,11 +135,12 @@ class Sweep {
       Volume& transmittances = transmittance_[link_of(link.offset)];
       for_each_cell(n_, [&](const glm::ivec3& p) {
         double& t = transmittances.at(0, 0, p.x, p.y, p.z);
-        t = cascade_.geometry == nullptr
-                ? 1
-                : transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
-        if (cascade_.geometry != nullptr && cascade_.occluded != nullptr)
-          t = open_share(t, *cascade_.occluded, cascade_.open, n_, p, -link.offset);
+        if (cascade_.geometry == nullptr)
+          t = 1;
+        else if (cascade_.occluded != nullptr)
+          t = seen_share(*cascade_.occluded, n_, p, -link.offset);
+        else
+          t = transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
       });
     }
   }

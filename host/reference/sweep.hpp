@@ -23,10 +23,8 @@ struct SweptCascade {
   const ClpvMedium* medium = nullptr;  ///< null: none
   /// The medium's source function, of scattered_in_cells(); null: 0.
   const Volume* scattered = nullptr;
-  /// Bits of visibility_masks(), which close links; null: none.
+  /// Bits of visibility_masks(): links transmit seen_share(); null: what `geometry` does not block.
   const std::vector<std::uint8_t>* occluded = nullptr;
-  bool completed = true;  ///< harmonics are completed to clamped cosines (cosine_rest)
-  bool open = false;      ///< with `occluded`, links of bounces: the root of T, or none
 };
 
 /// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of

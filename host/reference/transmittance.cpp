@@ -3,12 +3,10 @@
 
 #include <algorithm>
 
-#include "kernels/shared/sweep.h"
-
 namespace clpv::reference {
 namespace {
 
-constexpr int kPointsOfCube = 64;  // in each cube
+constexpr int kPointsOfCube = 64;
 
 /// Cube at an octant of a cell, in which the cell's centre is number 7 - octant.
 glm::ivec3 cube_at(const glm::ivec3& cell, int octant) {
@@ -24,36 +22,6 @@ bool between_centres(int n, const glm::ivec3& cube) {
 /// Index of a cube's first point.
 std::size_t first_point(int n, const glm::ivec3& cube) {
   return static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPointsOfCube;
-}
-
-/// Returns true if the centre of a cell sees few of the points about it.
-bool enclosed_centre(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell) {
-  int seen = 8 * kPointsOfCube;
-  for (int octant = 0; octant < 8; ++octant) {
-    const glm::ivec3 cube = cube_at(cell, octant);
-    if (!between_centres(n, cube)) continue;
-    for (int point = 0; point < kPointsOfCube; ++point)
-      seen -= occluded[first_point(n, cube) + point] >> (7 - octant) & 1;
-  }
-  return seen < CLPV_ENCLOSED;
-}
-
-/// Returns true if a link into `cell` from `side` is closed: in the cubes that it crosses, no point
-/// sees both centres. Links from outside the grid are open.
-bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
-                 const glm::ivec3& side) {
-  for (int octant = 0; octant < 8; ++octant) {
-    const glm::ivec3 cube = cube_at(cell, octant), upper = cube - cell + 1;
-    bool crossed = true;
-    for (int axis = 0; axis < 3; ++axis)
-      crossed = crossed && (side[axis] == 0 || (side[axis] > 0) == (upper[axis] == 1));
-    if (!crossed) continue;
-    if (!between_centres(n, cube)) return false;
-    const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
-    for (int point = 0; point < kPointsOfCube; ++point)
-      if ((occluded[first_point(n, cube) + point] & (1 << here | 1 << there)) == 0) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -79,14 +47,23 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
   return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
-double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open, int n,
-                  const glm::ivec3& cell, const glm::ivec3& side) {
-  const bool closed = closed_link(occluded, n, cell, side);
-  if (open) return closed ? 0 : std::sqrt(transmittance);
-  if (!closed) return transmittance;
-  if (!enclosed_centre(occluded, n, cell) && !enclosed_centre(occluded, n, cell + side)) return 0;
-  constexpr double kWall = double{CLPV_WALL_TRANSMITTANCE};
-  return std::max(0.0, (transmittance - kWall) / (1 - kWall));
+double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
+                  const glm::ivec3& side) {
+  int both = 0, either = 0;
+  for (int octant = 0; octant < 8; ++octant) {
+    const glm::ivec3 cube = cube_at(cell, octant), upper = cube - cell + 1;
+    bool crossed = true;
+    for (int axis = 0; axis < 3; ++axis)
+      crossed = crossed && (side[axis] == 0 || (side[axis] > 0) == (upper[axis] == 1));
+    if (!crossed) continue;
+    const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
+    for (int point = 0; point < kPointsOfCube; ++point) {
+      const int hidden = between_centres(n, cube) ? occluded[first_point(n, cube) + point] : 0;
+      const bool sees_here = (hidden >> here & 1) == 0, sees_there = (hidden >> there & 1) == 0;
+      both += sees_here && sees_there, either += sees_here || sees_there;
+    }
+  }
+  return both / std::max<double>(either, 1);
 }
 
 }  // namespace clpv::reference

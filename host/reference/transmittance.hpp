@@ -17,10 +17,10 @@ namespace clpv::reference {
 double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
                      const std::vector<double>& weights);
 
-/// Returns the transmittance of a link into `cell` from `side` that transmits `transmittance` if it
-/// is open (kernels/sweep/closed_links.cl, sweep_links.cl). `occluded`: bits of visibility_masks(),
-/// n^3 cubes. `open`: of a bounce; it transmits the root of T, or nothing if it is closed.
-double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open, int n,
-                  const glm::ivec3& cell, const glm::ivec3& side);
+/// Returns the transmittance of a link into `cell` from `side`: of the sample points about it, the
+/// share that see both of its ends among those that see one (kernels/sweep/sweep_links.cl).
+/// `occluded`: bits of visibility_masks(), n^3 cubes; nothing is hidden outside the grid.
+double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
+                  const glm::ivec3& side);
 
 }  // namespace clpv::reference

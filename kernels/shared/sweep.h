@@ -6,13 +6,8 @@
 enum {
   CLPV_SWEEP_BINS = 24,
   CLPV_AXIS_BINS = 8,  // bins swept across x, which come first; as many across y, then z
+  CLPV_HIDDEN_WORDS = 9,  // of seen_points.cl per cube: a byte for each of 28 pairs, 8 centres
 };
-
-// A centre that sees fewer than this many of the 512 sample points about it is enclosed. In the
-// corner of a room it sees 64.
-enum { CLPV_ENCLOSED = 64 };
-// Largest transmittance of a link through a full wall: along a corner.
-#define CLPV_WALL_TRANSMITTANCE 0.42265f
 
 // A bin of directions. Light travels from plane to plane, within a plane from row to row, and
 // within a row from column to column.

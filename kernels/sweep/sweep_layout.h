@@ -20,6 +20,7 @@
 // side.
 #define CLPV_SWEEP_PITCH bordered_pitch(CLPV_GRID)
 #define CLPV_BORDERED_PLANE bordered_plane_size(CLPV_GRID)
+#define CLPV_BORDERED_VOLUME bordered_volume_size(CLPV_GRID)
 
 // Index of a cell in a volume, in a plane buffer and in a bordered volume.
 CLPV_INLINE int sweep_index(const int plane, const int row, const int column) {
@@ -32,12 +33,15 @@ CLPV_INLINE int bordered_index(const int plane, const int row, const int column)
   return (plane + 1) * CLPV_BORDERED_PLANE + plane_index(row, column);
 }
 
-// Pairs of the eight cell centres at the corners of a cube: closed_links.cl writes a bit for each,
-// sweep_links.cl reads them.
+// Pairs of the eight cell centres at the corners of a cube: seen_points.cl writes a byte for each
+// pair and each centre, sweep_links.cl reads them.
 enum {
-  CLPV_CENTRES = 8,        // centre i is offset by (i & 1, i >> 1 & 1, i >> 2)
-  CLPV_ENCLOSED_BIT = 28,  // after the pairs
+  CLPV_CENTRES = 8,       // centre i is offset by (i & 1, i >> 1 & 1, i >> 2)
+  CLPV_PAIRS = 28,        // numbers of centres follow
+  CLPV_CUBE_POINTS = 64,
 };
 
 // Number of the pair of centres i < j: 0 to 27.
 static inline int pair_number(const int i, const int j) { return i * (13 - i) / 2 + j - 1; }
+// Number of a centre: 28 to 35.
+static inline int centre_number(const int i) { return CLPV_PAIRS + i; }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Computes the transmittance of each link into a cell for the sweep: 1 minus the blocking
-// potential.
+// Computes the transmittance T in [0, 1] of each link into a cell for the sweep: the share of the
+// sample points about it that see both ends, of those that see one (docs/method.md, 'The sweep').
 //
-//   T = 1 - clamp(B, 0, 1)      (docs/method.md, 'Blockers')
-//   T = 0                       if the link is closed
-//   T = max(0, (T - w) / (1 - w))   instead of 0, if a centre at an end of the closed link is
-//                               enclosed; w: CLPV_WALL_TRANSMITTANCE
-// With `open`, for sweeps of bounces, sqrt(T) or, if the link is closed, 0: light passes the two
-// sheets of a wall in two links.
+//   T = S_ab / (S_a + S_b - S_ab)    0 if no point sees an end
+//
+// S_a and S_b are the points that see centres a and b, S_ab those that see both, in all cubes that
+// the link crosses. Without points, T = 1 - clamp(B, 0, 1), B: blocking potential
+// (steps/link_transmittance.h).
 //
 // In:   blockers       geometry volume, samples at the cells' corners
-//       closed         closed pairs of centres in each cube between cells (closed_links.cl)
+//       hidden         hidden points of each cube between cells (seen_points.cl)
+//       points         1: of hidden points; 0: of the geometry volume
 // Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use
 //                      (sweep_layout.h)
 // From the host (host/pipeline/sweep/sweep_literals.cpp): literals of link_transmittance.h,
@@ -31,44 +31,47 @@ CLPV_INLINE intW read_words(__global const int* from, const int at) {
 #endif
 }
 
+// Byte `number` of W cubes: hidden points of a pair or a centre.
+CLPV_INLINE intW hidden_points(__global const int* hidden, const int cube, const int number) {
+  const intW words = read_words(hidden, number / 4 * CLPV_BORDERED_VOLUME + cube);
+  return words >> 8 * (number % 4) & 255;
+}
+
 // Returns true if the link that passes sides sx, sy and sz crosses the cube at octant o of a cell.
 static inline bool crosses(const int o, const int sx, const int sy, const int sz) {
   return (sx == 0 || (o & 1) == (sx > 0)) && (sy == 0 || (o >> 1 & 1) == (sy > 0)) &&
          (sz == 0 || (o >> 2) == (sz > 0));
 }
 
-// Reduces T on links that are closed in all cubes that they cross. A cell's centre is number 7 - o
-// in the cube at its octant o.
-CLPV_INLINE Links close_links(Links links, __global const int* closed, const int open,
-                              const int x, const int y, const int z) {
-  intW cubes[8];
-#pragma unroll
-  for (int o = 0; o < 8; ++o)
-    cubes[o] =
-        read_words(closed, bordered_index(z - 1 + (o >> 2), y - 1 + (o >> 1 & 1), x - 1 + (o & 1)));
+// T of every link into W cells, from hidden points. A cell's centre is number 7 - o in the cube at
+// its octant o.
+CLPV_INLINE Links seen_shares(__global const int* hidden, const int x, const int y, const int z) {
+  Links links;
 #pragma unroll
   for (int link = 0; link < CLPV_LINKS; ++link) {
     const int sx = link_sides[3 * link], sy = link_sides[3 * link + 1],
               sz = link_sides[3 * link + 2];
-    intW bits = 1;
+    intW both = 0, either = 0;
 #pragma unroll
     for (int o = 0; o < 8; ++o) {
+      const int cube = bordered_index(z - 1 + (o >> 2), y - 1 + (o >> 1 & 1), x - 1 + (o & 1));
       const int here = 7 - o, there = here + sx + 2 * sy + 4 * sz;
-      if (crosses(o, sx, sy, sz))
-        bits &= cubes[o] >> pair_number(min(here, there), max(here, there));
+      if (crosses(o, sx, sy, sz)) {
+        const intW from_one =
+            hidden_points(hidden, cube, pair_number(min(here, there), max(here, there)));
+        both += CLPV_CUBE_POINTS - from_one;
+        either += CLPV_CUBE_POINTS + from_one -
+                  hidden_points(hidden, cube, centre_number(here)) -
+                  hidden_points(hidden, cube, centre_number(there));
+      }
     }
-    const intW neighbour = read_words(closed, bordered_index(z + sz, y + sy, x + sx));
-    const intW enclosed = (cubes[7] | neighbour) >> CLPV_ENCLOSED_BIT & bits;
-    const float wall = CLPV_WALL_TRANSMITTANCE;
-    const realW t = links.c[link], reduced = fmax((t - wall) * (1.0f / (1.0f - wall)), ZERO);
-    links.c[link] = to_realW(1 - bits) * (open ? sqrt(t) : t);
-    if (!open) links.c[link] += to_realW(enclosed) * reduced;
+    links.c[link] = to_realW(both) / fmax(to_realW(either), ONE);
   }
   return links;
 }
 
-__kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* closed,
-                          const int open, CLPV_BUFFER_OUT transmittance) {
+__kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* hidden, const int points,
+                          CLPV_BUFFER_OUT transmittance) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
@@ -77,8 +80,8 @@ __kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* closed,
     for (int r = 0; r < W; ++r) tiles[v].row[r] = 0.0f;
   }
   for (int r = 0; r < W && y + r < CLPV_GRID; ++r) {
-    const Links links =
-        close_links(find_transmittance(blockers, x, y + r, z), closed, open, x, y + r, z);
+    const Links links = points ? seen_shares(hidden, x, y + r, z)
+                               : find_transmittance(blockers, x, y + r, z);
 #pragma unroll
     for (int v = 0; v < CLPV_AXIS_LINKS; ++v) {
       const int across_y = v + CLPV_AXIS_LINKS, across_z = v + 2 * CLPV_AXIS_LINKS;

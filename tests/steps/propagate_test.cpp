@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <numbers>
@@ -231,31 +230,31 @@ TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
   EXPECT_EQ(along_axes, 6);
 }
 
-/// Transmittance of a link into the middle one of 3^3 cells. `hidden`: centres that the two points
-/// at lower x in each row of a cube do not see, and those that the others do not see.
-double open_share(double transmittance, const std::array<std::uint8_t, 2>& hidden,
-                  const glm::ivec3& side, bool open = false) {
+/// Transmittance of a link into the middle one of 3^3 cells. `hidden`: centres that a point of a
+/// cube does not see, by its column and row.
+double seen_share(const std::function<int(int, int)>& hidden, const glm::ivec3& side) {
   constexpr int kCells = 3;
   std::vector<std::uint8_t> occluded(std::size_t{64} * kCells * kCells * kCells);
-  for (std::size_t i = 0; i < occluded.size(); ++i) occluded[i] = hidden[i % 4 / 2];
-  return reference::open_share(transmittance, occluded, open, kCells, glm::ivec3(1), side);
+  for (int i = 0; i < static_cast<int>(occluded.size()); ++i)
+    occluded[i] = static_cast<std::uint8_t>(hidden(i % 4, i / 4 % 4));
+  return reference::seen_share(occluded, kCells, glm::ivec3(1), side);
 }
 
-TEST(Transmittance, AWallClosesLinks) {
-  constexpr std::array<std::uint8_t, 2> kNone = {0, 0}, kWall = {0xaa, 0x55}, kAll = {0xff, 0xff};
+TEST(Transmittance, LinksTransmitTheShareOfPointsThatSeeBothEnds) {
+  constexpr int kOdd = 0xaa, kEven = 0x55;  // centres at the upper and at the lower end along x
+  const auto none = [](int, int) { return 0; };
+  const auto all = [](int, int) { return 0xff; };
+  const auto wall = [](int column, int) { return column < 2 ? kOdd : kEven; };
+  const auto half = [&](int column, int row) { return row < 2 ? wall(column, row) : 0; };
+  const auto on_one_side = [](int column, int) { return column < 2 ? kOdd : 0; };
   for (const glm::ivec3 side : {glm::ivec3(1, 0, 0), {-1, 1, 0}, {1, 1, -1}}) {
-    EXPECT_EQ(open_share(0.3, kNone, side), 0.3);
-    EXPECT_EQ(open_share(0.3, kWall, side), 0);
-    EXPECT_EQ(open_share(0.25, kNone, side, true), 0.5) << "a bounce's";
-    EXPECT_EQ(open_share(1, kWall, side, true), 0) << "a bounce's";
-    EXPECT_EQ(open_share(1, kAll, side, true), 0) << "a bounce's";
-    EXPECT_EQ(open_share(1, kWall, side), 0);
-    // Enclosed centres see nothing.
-    EXPECT_EQ(open_share(0.42, kAll, side), 0) << "a full wall along a corner";
-    EXPECT_NEAR(open_share(0.71, kAll, side), 0.5, 0.01);
-    EXPECT_EQ(open_share(1, kAll, side), 1);
+    EXPECT_EQ(seen_share(none, side), 1);
+    EXPECT_EQ(seen_share(wall, side), 0);
+    EXPECT_EQ(seen_share(half, side), 0.5);
+    EXPECT_EQ(seen_share(on_one_side, side), 0.5);
+    EXPECT_EQ(seen_share(all, side), 0) << "enclosed centres";
   }
-  EXPECT_EQ(open_share(0.3, kWall, {0, 1, -1}), 0.3) << "along the wall";
+  EXPECT_EQ(seen_share(wall, {0, 1, -1}), 1) << "along the wall";
 }
 
 }  // namespace

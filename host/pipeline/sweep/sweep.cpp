@@ -16,7 +16,6 @@ namespace clpv {
 namespace {
 
 constexpr float kCellRatio = 2;  // ratio of a coarser cascade's cell to the next finer one's
-constexpr int kBounceParts = 1;  // parts of a bin, squared, in sweeps for bounces
 
 std::size_t directions_of(int parts) {
   return kSweepBins * parts * parts;
@@ -90,40 +89,39 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       2 * ordinates * bordered_plane_size(options.grid) * number_bytes(options.format.storage),
       "boundary condition of the sweep");
   if (options.blocking) {
-    find_closed_links_.emplace(session, volumes_.program("sweep/closed_links.cl"),
-                               "find_closed_links");
+    count_hidden_points_.emplace(session, volumes_.program("sweep/seen_points.cl"),
+                                 "count_hidden_points");
     transmittance_.emplace(
         session, volumes_.program("sweep/sweep_links.cl", sweep_links_literals(basis, transport)),
         "sweep_links");
-    closed_ = zeroed_buffer(session, bordered_volume_size(options.grid) * sizeof(cl_uint),
-                            "closed links of the sweep");
+    hidden_ = zeroed_buffer(
+        session, CLPV_HIDDEN_WORDS * bordered_volume_size(options.grid) * sizeof(cl_uint),
+        "hidden points of the sweep's links");
   }
   if (options.medium)
     medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
-  make_cascades(basis);
+  plan_ = sweep_plan(options_.bounces, scatters(options_.medium), options_.bounce_sweeps);
+  for (std::size_t c = 0; c < options_.parts.size(); ++c)
+    cascades_.push_back(make_directions(basis, c));
   if (plan_.back().light == SweptLight::series)
     last_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
-}
-
-void Sweeper::make_cascades(const Basis& basis) {
-  const std::size_t count = options_.parts.size();
-  plan_ = sweep_plan(options_.bounces, scatters(options_.medium), options_.bounce_sweeps);
-  const bool has_few = !std::ranges::all_of(plan_, &SweepStep::all_directions);
-  for (std::size_t c = 0; c < count; ++c) {
-    const int coarser = c + 1 == count ? 0 : options_.parts[c + 1];
-    Cascade cascade{make_directions(basis, options_.parts[c], coarser, c > 0), {}};
-    if (has_few)
-      cascade.few = make_directions(basis, kBounceParts,
-                                    coarser == 0 || last_light_enters() ? coarser : kBounceParts,
-                                    c > 0 && !last_light_enters(), true);
-    cascades_.push_back(std::move(cascade));
-  }
 }
 
 /// Light that enters at a cascade's border. True: in every sweep, the coarser cascade's final
 /// light; false: the coarser cascade's light after the same number of bounces.
 bool Sweeper::last_light_enters() const {
   return options_.bounces == Bounces::all && !scatters(options_.medium);
+}
+
+/// The coarser cascade's halo that enters at the border in a sweep that stores `halo`.
+Sweeper::Halo Sweeper::entering(Halo halo) const {
+  if (!last_light_enters()) return halo;
+  return halo < kWhite ? kLast : kWhite;
+}
+
+/// Returns true if sweeps of a cascade store this halo for the next finer one.
+bool Sweeper::feeds_finer(Halo halo, std::size_t cascade) const {
+  return cascade > 0 && entering(halo) == halo && (halo % 2 == kLast || plan_.size() > 1);
 }
 
 /// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`.
@@ -166,16 +164,15 @@ std::size_t Sweeper::group() const {
   return std::min(std::min(most, kMost) / kLeast * kLeast, (cells + kLeast - 1) / kLeast * kLeast);
 }
 
-Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
-                                             bool feeds_finer, bool few) const {
-  SweepMeans means = sweep_means(basis, parts);
-  if (few) means.rest.reset();
+Sweeper::Directions Sweeper::make_directions(const Basis& basis, std::size_t cascade) const {
+  const int parts = options_.parts[cascade];
+  const int coarser = cascade + 1 == options_.parts.size() ? 0 : options_.parts[cascade + 1];
+  const SweepMeans means = sweep_means(basis, parts);
   std::vector<ClpvSweepDirection> table = sweep_direction_table(parts, coarser);
   const Buffer light_table = session_.upload(table, "directions to sweep");
   for (ClpvSweepDirection& each : table) each.from_coarser *= kCellRatio * kCellRatio;
   Directions made{parts,
                   coarser,
-                  feeds_finer,
                   light_table,
                   session_.upload(table, "directions of the furnace"),
                   session_.upload(means.coefficients, "coefficients of the sweep's bins"),
@@ -185,13 +182,11 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
                   Kernel(session_, sweep_program(basis.size(), means, parts),
                          form() == SweepForm::bins     ? "sweep_bin"
                          : form() == SweepForm::groups ? "sweep_group"
-                                                       : "sweep_plane"),
-                  zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
-                                "boundary light of a finer cascade"),
-                  {},
-                  {}};
-  made.white_halo =
-      zeroed_buffer(session_, made.halo_light.bytes(), "boundary light of a finer furnace");
+                                                       : "sweep_plane")};
+  for (const Halo halo : {kLast, kEarlier, kWhite, kWhiteEarlier})
+    made.halos[halo] = zeroed_buffer(
+        session_, feeds_finer(halo, cascade) ? halo_bytes(options_, parts) : sizeof(float),
+        "boundary light of a finer cascade");
   if (coarser > 0) {
     ProgramSource border =
         border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
@@ -219,44 +214,40 @@ void Sweeper::enter_medium(std::size_t cascade, const ClpvGrid& grid) {
     attenuate(table, directions.parts, *options_.medium, double{grid.cell});
     session_.write(directions.table, table);
   };
-  attenuate_along(cascades_[cascade].all);
-  if (cascades_[cascade].few) attenuate_along(*cascades_[cascade].few);
+  attenuate_along(cascades_[cascade]);
   medium_->place(cascade, grid);
 }
 
 void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded) {
   if (occluded.exists()) {
     const std::size_t n = options_.grid;
-    find_closed_links_.value().set(occluded, static_cast<cl_uint>(cascade), closed_);
-    find_closed_links_->launch({n, n, n}, {std::min(n, kRowGroup), 1, 1});
+    count_hidden_points_.value().set(occluded, static_cast<cl_uint>(cascade), hidden_);
+    count_hidden_points_->launch({n, n, n}, {std::min(n, kRowGroup), 1, 1});
   }
-  const auto set_links = [&](const Directions& directions, bool open) {
-    transmittance_.value().set(geometry.memory(), closed_, cl_int{open}, directions.links);
-    volumes_.launch(*transmittance_, 1);
-  };
-  set_links(cascades_[cascade].all, false);
-  if (cascades_[cascade].few) set_links(*cascades_[cascade].few, occluded.exists());
+  transmittance_.value().set(geometry.memory(), hidden_, cl_int{occluded.exists()},
+                             cascades_[cascade].links);
+  volumes_.launch(*transmittance_, 1);
 }
 
 void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& grids,
                            const Volume& white, const Volume* reflectors, Volume& accumulated) {
-  const auto sweep_faces = [&](const Volume& faces, bool all_directions) {
+  const auto sweep_faces = [&](const Volume& faces, Halo halo) {
     bouncer_.inject_white(faces, sources_);
-    sweep_white(all_directions, cascade, grids);
+    sweep_white(halo, cascade, grids);
   };
   // Backs reflect, too: in their own furnace no light grows from bounce to bounce.
   const Volume* normalised = nullptr;
   if (reflectors != nullptr) {
-    sweep_faces(*reflectors, false);
+    sweep_faces(*reflectors, kWhiteEarlier);
     normalised = &bouncer_.set_reflectors(cascade, swept_, *reflectors);
   }
-  sweep_faces(white, true);
+  sweep_faces(white, kWhite);
   collect(accumulated, 3, 1);
   if (plan_.back().light != SweptLight::series) return;
   enter_medium(cascade, grids[cascade]);
   const auto sweep_reflected = [&](const Volume& flux) {
     bouncer_.inject_flux(flux, *normalised, sources_);
-    launch(*cascades_[cascade].few, cascade, {}, false);
+    launch(kEarlier, cascade, {}, false);
   };
   sweep_reflected(*normalised);
   sweep_reflected(bouncer_.reflect_returned(cascade, swept_));
@@ -264,22 +255,9 @@ void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& gri
 }
 
 /// Sweeps the sources as those of the white furnace: in open space, with radiance 1 at the border.
-void Sweeper::sweep_white(bool all_directions, std::size_t cascade,
-                          const std::vector<ClpvGrid>& grids) {
-  const auto swap_with_light = [&] {
-    for (Cascade& each : cascades_) {
-      for (Directions* d : {&each.all, each.few ? &*each.few : nullptr}) {
-        if (d == nullptr) continue;
-        std::swap(d->halo_light, d->white_halo);
-        std::swap(d->table, d->white_table);
-      }
-    }
-  };
-  swap_with_light();
-  Directions& directions = all_directions ? cascades_[cascade].all : *cascades_[cascade].few;
-  light_border(all_directions, cascade, grids, directions.white_sky, 1, 1);
-  launch(directions, cascade, prepare_halo(directions, cascade, grids), true);
-  swap_with_light();
+void Sweeper::sweep_white(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids) {
+  light_border(halo, cascade, grids, cascades_[cascade].white_sky, 1, 1);
+  launch(halo, cascade, prepare_halo(halo, cascade, grids), true);
   join_furnace_.set(swept_);
   join_furnace_.launch({kSweepBins * sweep_volume_size(options_.grid) / volumes_.lanes()}, {1});
 }
@@ -287,37 +265,36 @@ void Sweeper::sweep_white(bool all_directions, std::size_t cascade,
 void Sweeper::sweep(const SweepInput& input, Volume& accumulated) {
   enter_medium(input.cascade, input.grids[input.cascade]);
   if (medium_) medium_->scatter_lights(input.grids[input.cascade], input.lights);
-  bordered_ = nullptr;
-  for (const SweepStep& step : plan_) run(step, input);
+  bordered_.reset();
+  for (const SweepStep& step : plan_) run(step, &step == &plan_.back() ? kLast : kEarlier, input);
   collect(accumulated, 0, 3);
 }
 
 /// Sweeps the light of a step with its boundary condition, and stores the halo of the next finer
 /// cascade.
-void Sweeper::run(const SweepStep& step, const SweepInput& input) {
-  Cascade& cascade = cascades_[input.cascade];
-  Directions& directions = step.all_directions ? cascade.all : *cascade.few;
+void Sweeper::run(const SweepStep& step, Halo halo, const SweepInput& input) {
   if (step.scattered) medium_->scatter_swept(swept_);
   set_sources(step, input);
   const float cell = input.grids[input.cascade].cell;
-  // Groups leave the boundary condition as it is: it serves all sweeps along the same directions.
-  const bool stands = form() == SweepForm::groups && bordered_ == &directions;
-  const bool lit = stands || light_border(step.all_directions, input.cascade, input.grids,
-                                          directions.sky, input.sky_scale * (cell * cell));
-  bordered_ = lit ? &directions : nullptr;
-  const ClpvSweepHalo stored = prepare_halo(directions, input.cascade, input.grids);
+  // Groups leave the boundary condition as it is: it serves all sweeps that take the same light.
+  const bool stands = form() == SweepForm::groups && bordered_ == entering(halo);
+  const bool lit =
+      stands || light_border(halo, input.cascade, input.grids, cascades_[input.cascade].sky,
+                             input.sky_scale * (cell * cell));
+  bordered_ = lit ? std::optional(entering(halo)) : std::nullopt;
+  const ClpvSweepHalo stored = prepare_halo(halo, input.cascade, input.grids);
   if (last_swept_.exists()) std::swap(swept_, last_swept_);
-  launch(directions, input.cascade, stored, lit, step.scattered);
+  launch(halo, input.cascade, stored, lit, step.scattered);
 }
 
 /// Returns the cells whose light a sweep stores for the next finer cascade.
-ClpvSweepHalo Sweeper::prepare_halo(const Directions& directions, std::size_t cascade,
+ClpvSweepHalo Sweeper::prepare_halo(Halo kind, std::size_t cascade,
                                     const std::vector<ClpvGrid>& grids) {
-  if (!directions.feeds_finer) return {};
+  if (!feeds_finer(kind, cascade)) return {};
   const ClpvSweepHalo stored = halo(cascade, grids);
   // Cells of the halo outside this grid are dark.
-  if (!within(stored, options_.grid))
-    session_.fill_zero(directions.halo_light, directions.halo_light.bytes());
+  const Buffer& light = cascades_[cascade].halos[kind];
+  if (!within(stored, options_.grid)) session_.fill_zero(light, light.bytes());
   return stored;
 }
 
@@ -338,13 +315,9 @@ void Sweeper::set_sources(const SweepStep& step, const SweepInput& input) {
 
 /// Sets the boundary condition of a cascade from the next coarser one, or from `sky` times
 /// `sky_scale`. Returns false, and sets nothing, if no light enters.
-bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector<ClpvGrid>& grids,
+bool Sweeper::light_border(Halo halo, std::size_t c, const std::vector<ClpvGrid>& grids,
                            const Buffer& sky, float sky_scale, cl_int first_lit) {
-  const auto directions_in = [&](std::size_t cascade) -> Directions& {
-    return all_directions || (cascade != c && last_light_enters()) ? cascades_[cascade].all
-                                                                   : *cascades_[cascade].few;
-  };
-  Directions& directions = directions_in(c);
+  Directions& directions = cascades_[c];
   if (!directions.border && !sky.exists()) return false;
   Kernel& kernel = directions.border ? *directions.border : *directions.sky_border;
   // A sweep by planes reads the plane upstream of the grid among the odd ones.
@@ -353,9 +326,9 @@ bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector
                                                       : 0;
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
-    kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
-               halo_of(options_.grid, offset), offset[0], offset[1], offset[2], first_lit,
-               plane_buffer_, upstream, border_);
+    kernel.set(bins_, halo < kWhite ? directions.table : directions.white_table,
+               cascades_[c + 1].halos[entering(halo)], halo_of(options_.grid, offset), offset[0],
+               offset[1], offset[2], first_lit, plane_buffer_, upstream, border_);
   } else {
     kernel.set(sky, sky_scale, plane_buffer_, upstream, border_);
   }
@@ -371,12 +344,14 @@ ClpvSweepHalo Sweeper::halo(std::size_t cascade, const std::vector<ClpvGrid>& gr
 }
 
 /// Launches the sweep of a cascade into swept_. `lit`: light_border() has set light at the border.
-void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSweepHalo& halo,
-                     bool lit, bool scattered) {
+void Sweeper::launch(Halo halo, std::size_t cascade, const ClpvSweepHalo& stored, bool lit,
+                     bool scattered) {
+  Directions& directions = cascades_[cascade];
   const auto set = [&](cl_int last) {
-    directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means,
-                         sources_.coefficients, sources_.lit, directions.links, border_, halo,
-                         plane_buffer_, swept_, directions.halo_light, last);
+    directions.sweep.set(bins_, halo < kWhite ? directions.table : directions.white_table,
+                         directions.coefficients, directions.means, sources_.coefficients,
+                         sources_.lit, directions.links, border_, stored, plane_buffer_, swept_,
+                         directions.halos[halo], last);
     if (medium_)
       medium_->add_to(directions.sweep, cascade, scattered);
     else

@@ -3,6 +3,7 @@
 // direction (kernels/sweep/; docs/method.md, 'The sweep').
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -44,9 +45,7 @@ class Sweeper {
           const SweepOptions& options);
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
-  /// samples. `occluded`: bits of visibility_masks() for all cascades, from which closed links are
-  /// found; with them other links of sweeps for bounces transmit the root of T. Empty: none is
-  /// closed.
+  /// samples or, if there are some, from `occluded`: bits of visibility_masks() for all cascades.
   void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
@@ -69,44 +68,38 @@ class Sweeper {
   SweepForm form() const;
 
  private:
+  /// Which sweep's border light a halo holds for the next finer cascade: the last, an earlier one,
+  /// if the finer cascade's earlier sweeps take that, and the same of the white furnace.
+  enum Halo : std::size_t { kLast, kEarlier, kWhite, kWhiteEarlier, kHalos };
   /// Directions of one cascade, their kernels and light at its border.
   struct Directions {
     int parts, coarser;  ///< parts of the bins of this cascade and of the next coarser one; 0: none
-    bool feeds_finer;    ///< stores border light for the next finer cascade
     Buffer table;        ///< ClpvSweepDirection
     Buffer white_table;  ///< the same for the white furnace, whose light has the unit s^2
     Buffer coefficients, means;  ///< SweepMeans
     Buffer links;                ///< transmittance
     Kernel sweep;
-    Buffer halo_light;             ///< border light of the next finer cascade
-    std::optional<Kernel> border;  ///< border light from the coarser cascade; none for the coarsest
-    std::optional<Kernel> sky_border;  ///< border light from the sky; for the coarsest
-    Buffer sky = {},
-           white_sky = {};   ///< swept_sky(); of the scene's sky, if any, and of an even one
-    Buffer white_halo = {};  ///< halo_light of the furnace
+    std::array<Buffer, kHalos> halos = {};  ///< border light of the next finer cascade
+    std::optional<Kernel> border = {};      ///< from the coarser cascade; none for the coarsest
+    std::optional<Kernel> sky_border = {};  ///< from the sky; for the coarsest
+    Buffer sky = {}, white_sky = {};  ///< swept_sky(); of the scene's sky, if any, and an even one
   };
-  struct Cascade {
-    Directions all;
-    std::optional<Directions> few;  ///< one per bin; none if no step of the plan has them
-  };
-  /// `few`: for incident flux alone, from the basis's functions as they are.
-  Directions make_directions(const Basis& basis, int parts, int coarser, bool feeds_finer,
-                             bool few = false) const;
-  void make_cascades(const Basis& basis);
+  Directions make_directions(const Basis& basis, std::size_t cascade) const;
   ProgramSource sweep_program(int coefficients, const SweepMeans& means, int parts) const;
   void enter_medium(std::size_t cascade, const ClpvGrid& grid);
-  void run(const SweepStep& step, const SweepInput& input);
+  void run(const SweepStep& step, Halo halo, const SweepInput& input);
   void set_sources(const SweepStep& step, const SweepInput& input);
-  void sweep_white(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids);
-  bool light_border(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids,
+  void sweep_white(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  bool light_border(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids,
                     const Buffer& sky, float sky_scale, cl_int first_lit = 0);
   void darken_border(const Directions& directions);
-  ClpvSweepHalo prepare_halo(const Directions& directions, std::size_t cascade,
-                             const std::vector<ClpvGrid>& grids);
-  void launch(Directions& directions, std::size_t cascade, const ClpvSweepHalo& halo, bool lit,
+  ClpvSweepHalo prepare_halo(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  void launch(Halo halo, std::size_t cascade, const ClpvSweepHalo& stored, bool lit,
               bool scattered = false);
   void collect(Volume& accumulated, int first, int channels);
   bool last_light_enters() const;
+  Halo entering(Halo halo) const;
+  bool feeds_finer(Halo halo, std::size_t cascade) const;
   std::size_t group() const;
 
   Session& session_;
@@ -114,16 +107,16 @@ class Sweeper {
   SweepVolumes volumes_;
   Buffer bins_;
   SweepSources sources_;
-  Buffer closed_;  ///< closed_links.cl; zeros close no link
+  Buffer hidden_;  ///< seen_points.cl
   /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
   Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
-  const Directions* bordered_ = nullptr;  ///< whose boundary condition a sweep() has set last
+  std::optional<Halo> bordered_;  ///< of which a sweep() has set the boundary condition last
   Kernel source_, collect_, join_furnace_;
-  std::optional<Kernel> find_closed_links_, transmittance_;
+  std::optional<Kernel> count_hidden_points_, transmittance_;
   std::optional<SweepMedium> medium_;
   std::vector<SweepStep> plan_;
-  std::vector<Cascade> cascades_;
+  std::vector<Directions> cascades_;
   Bouncer bouncer_;
 };
 

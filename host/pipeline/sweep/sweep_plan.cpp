@@ -6,14 +6,14 @@
 namespace clpv {
 namespace {
 
-/// `sweeps` of few directions, each with one more reflection, then the last sweep.
+/// `sweeps` with one more reflection each, then the last sweep.
 std::vector<SweepStep> bounced_plan(int sweeps, SweptLight last, bool scattered) {
   std::vector<SweepStep> plan{{.light = SweptLight::injected}};
   while (static_cast<int>(plan.size()) < sweeps)
     plan.push_back({.light = SweptLight::reflected, .scattered = scattered});
   if (last == SweptLight::series && sweeps > kLeastSeriesSweeps)
     plan[1].light = SweptLight::relaxed;
-  plan.push_back({.light = last, .all_directions = true, .scattered = scattered});
+  plan.push_back({.light = last, .scattered = scattered});
   return plan;
 }
 
@@ -23,7 +23,7 @@ std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, int before_ser
   switch (bounces) {
     case Bounces::automatic:
     case Bounces::one:
-      return {{.light = SweptLight::injected, .all_directions = true}};
+      return {{.light = SweptLight::injected}};
     case Bounces::two:
       return bounced_plan(1, SweptLight::reflected, scatters);
     case Bounces::all:

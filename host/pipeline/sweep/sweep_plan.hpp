@@ -20,11 +20,10 @@ enum class SweptLight {
 
 struct SweepStep {
   SweptLight light;
-  bool all_directions = false;  ///< false: one per bin, enough for incident flux
-  bool scattered = false;       ///< true: a medium scatters the last sweep's light too
+  bool scattered = false;  ///< true: a medium scatters the last sweep's light too
 };
 
-/// The last step has all directions, and its result is the light of the cascade. `scatters`: there
+/// The result of the last step is the light of the cascade. `scatters`: there
 /// is a medium that scatters light. `before_series`: sweeps before the series of all bounces.
 std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, int before_series);
 
