@@ -170,7 +170,7 @@ TEST(BenchCompare, ReportsWithoutACommonRowFail) {
   const nlohmann::json one = report({{"a", 10, 0.1}}), other = report({{"b", 10, 0.1}});
   const test::Outcome outcome = compare_files(one, other, "");
   EXPECT_EQ(outcome.exit_code, 5);
-  EXPECT_THAT(outcome.out, HasSubstr("a: LOST: not in this run\nb: only in this run"));
+  EXPECT_THAT(outcome.out, HasSubstr("b: only in this run\na: LOST: not in this run"));
   EXPECT_THAT(outcome.err, HasSubstr("no row has a value in both reports"));
   EXPECT_EQ(compare_files(report({{"a", 10, 0.1}, {"b", 10, 0.1}}), other, "").exit_code, 0)
       << "a lost row is reported, and fails only with a limit";
