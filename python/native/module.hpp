@@ -336,6 +336,7 @@ struct type_caster<T> {
     return true;
   }
   static handle cast(const T& given, return_value_policy, handle) {
+    const clpv::python::CallInProgress in_progress;  // Python's code below may release the GIL
     dict all;
     std::apply([&](const auto&... each) { ((all[each.first] = given.*each.second), ...); },
                Fields::kAll);

@@ -52,6 +52,7 @@ py::object dict_of(const Stats& stats) {
                            {"build", stats.build_ms},
                            {"device_bytes", stats.device_bytes},
                            {"peak_device_bytes", stats.peak_device_bytes}};
+  const CallInProgress in_progress;  // of Python's code, which may release the GIL
   return py::module_::import("json").attr("loads")(all.dump());
 }
 
