@@ -24,18 +24,11 @@
 #include "support/json_optional.hpp"
 #include "times/time_record.hpp"
 
-namespace clpv {
-
-namespace bench {
+namespace clpv::bench {
 namespace {
 
 nlohmann::json text_or_null(const std::string& text) {
   return text.empty() ? nlohmann::json(nullptr) : nlohmann::json(text);
-}
-
-/// NaN becomes null, as JSON has no NaN.
-nlohmann::json number_or_null(const std::optional<double>& value) {
-  return value && *value == *value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
 nlohmann::json problem_json(const Problem& problem) {
@@ -108,19 +101,11 @@ nlohmann::json to_json(const Row& row, int index) {
                {"waits", row.host.waits},
                {"arguments", row.host.arguments},
                {"written", row.host.written},
-               {"max_rel_error", number_or_null(row.max_rel_error)},
+               {"max_rel_error", row.max_rel_error},
                {"tolerance", row.tolerance},
-               {"published_ms", number_or_null(row.published_ms)}});
+               {"published_ms", row.published_ms}});
   return json;
 }
-
-}  // namespace bench
-
-}  // namespace clpv
-
-namespace clpv::bench {
-
-// Writes benchmark results as JSON and tables.
 
 namespace {
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
 
 #include "bench/published.hpp"
 #include "bench/suites.hpp"
@@ -47,45 +46,28 @@ constexpr TablePass kTablePasses[] = {{Pass::inject_light, "injection", true},
                                       {Pass::propagate, "propagation", true},
                                       {Pass::gather, "light buffer", false}};
 
-/// Key of a time in the table: settings, indirect shadows, pass, cascade (-1: all), basis.
-using TimeKey = std::tuple<Settings, bool, Pass, int, std::string>;
-
 /// Times of one basis [ms], and the status of a row that was not timed.
 struct Times {
   std::optional<double> published, measured;
   std::string status = "-";
 };
 
-struct TimeTable {
-  std::map<TimeKey, Times> times;
-  std::vector<std::string> bases;
-  int cascades = 0;
+/// Rows of one part of the table.
+using Section = std::vector<const Row*>;
 
-  explicit TimeTable(const std::vector<Row>& rows) {
-    for (const Row& row : rows) {
-      if (!row.problem) continue;
-      const RenderOptions& o = row.problem->options;
-      for (const TablePass& pass : kTablePasses) {
-        if (row.stage != name_of(pass.pass)) continue;
-        const Settings settings =
-            o.lobe_time == LobeTime::kernel ? Settings::published : Settings::constant_lobes;
-        const int cascade = row.problem->cascade.value_or(-1);
-        const bool timed = row.status == Status::ok;
-        times[{settings, o.blocked(), pass.pass, cascade, o.basis}] = {
-            row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
-            std::string(name_of(row.status))};
-        if (std::count(bases.begin(), bases.end(), o.basis) == 0) bases.push_back(o.basis);
-        cascades = std::max(cascades, cascade + 1);
-      }
-    }
+/// A row that --filter left out has its published time.
+Times times_of(const Section& section, Pass pass, std::optional<int> cascade, bool shadows,
+               const std::string& basis) {
+  for (const Row* row : section) {
+    if (row->stage != name_of(pass) || row->problem->cascade != cascade ||
+        row->problem->options.basis != basis)
+      continue;
+    const bool timed = row->status == Status::ok;
+    return {row->published_ms, timed ? std::optional(row->times.median) : std::nullopt,
+            std::string(name_of(row->status))};
   }
-  Times at(const TimeKey& key) const {
-    if (const auto entry = times.find(key); entry != times.end()) return entry->second;
-    const auto& [settings, shadows, pass, cascade, basis] = key;
-    return {published_ms(pass, basis, shadows, cascade < 0 ? std::nullopt : std::optional(cascade)),
-            std::nullopt};
-  }
-};
+  return {published_ms(pass, basis, shadows, cascade), std::nullopt};
+}
 
 std::string cell(const std::optional<double>& value, int digits,
                  const std::string& otherwise = "-") {
@@ -129,17 +111,19 @@ void add(Times& sum, const Times& times) {
   plus(sum.measured, times.measured);
 }
 
-std::string section_text(const TimeTable& table, Settings settings, bool shadows) {
+std::string section_text(const Section& section, Settings settings, bool shadows,
+                         const std::vector<std::string>& bases, int cascades) {
   std::string text =
       fmt::format("\n{}, {} indirect shadows\n", title(settings), shadows ? "with" : "without");
-  std::vector<Times> sums(table.bases.size(), {0.0, 0.0}), with_geometry = sums;
+  std::vector<Times> sums(bases.size(), {0.0, 0.0}), with_geometry = sums;
   for (const TablePass& pass : kTablePasses) {
     if (pass.pass == Pass::inject_geometry && !shadows) continue;
-    for (int cascade = 0; cascade < (pass.per_cascade ? table.cascades : 1); ++cascade) {
+    for (int cascade = 0; cascade < (pass.per_cascade ? cascades : 1); ++cascade) {
       std::vector<Times> columns;
-      for (std::size_t b = 0; b < table.bases.size(); ++b) {
-        columns.push_back(table.at(
-            {settings, shadows, pass.pass, pass.per_cascade ? cascade : -1, table.bases[b]}));
+      for (std::size_t b = 0; b < bases.size(); ++b) {
+        columns.push_back(times_of(section, pass.pass,
+                                   pass.per_cascade ? std::optional(cascade) : std::nullopt,
+                                   shadows, bases[b]));
         add(with_geometry[b], columns.back());
         if (pass.pass != Pass::inject_geometry) add(sums[b], columns.back());
       }
@@ -153,16 +137,20 @@ std::string section_text(const TimeTable& table, Settings settings, bool shadows
 }
 
 std::string table1_table(const std::vector<Row>& rows) {
-  const TimeTable table(rows);
-  std::string text = head(table.bases);
-  for (const Settings settings : {Settings::published, Settings::constant_lobes}) {
-    for (const bool shadows : {true, false}) {
-      const auto first = table.times.lower_bound({settings, shadows, {}, {}, {}});
-      if (first != table.times.end() && std::get<0>(first->first) == settings &&
-          std::get<1>(first->first) == shadows)
-        text += section_text(table, settings, shadows);
-    }
+  std::vector<std::string> bases;
+  int cascades = 0;
+  std::map<std::pair<Settings, bool>, Section> sections;  // by settings, and lack of shadows
+  for (const Row& row : rows) {
+    const RenderOptions& o = row.problem->options;
+    if (std::count(bases.begin(), bases.end(), o.basis) == 0) bases.push_back(o.basis);
+    cascades = std::max(cascades, row.problem->cascade.value_or(-1) + 1);
+    sections[{o.lobe_time == LobeTime::kernel ? Settings::published : Settings::constant_lobes,
+              !o.blocked()}]
+        .push_back(&row);
   }
+  std::string text = head(bases);
+  for (const auto& [key, section] : sections)
+    text += section_text(section, key.first, !key.second, bases, cascades);
   return text + "\npaper: Table 1, on a Radeon HD 6870; clpv: medians on this device.\n";
 }
 

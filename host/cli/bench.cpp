@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "basis/basis.hpp"
-#include "bench/compare_runs.hpp"
 #include "bench/row.hpp"
 #include "bench/runner.hpp"
 #include "cli/commands.hpp"
@@ -16,7 +15,6 @@
 #include "cli/options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
-#include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -26,8 +24,7 @@ namespace bench_command {
 constexpr const char* kDefaultScene = "scenes/atrium.json";
 
 struct Options {
-  double fail_above = 0;  ///< 0: not given
-  std::string suite, scene = kDefaultScene, model, filter, format, output, compare, plot, log;
+  std::string suite, scene = kDefaultScene, model, filter, format, output, plot, log;
   SceneChanges changes;
   bench::BenchOptions bench;
 };
@@ -60,22 +57,6 @@ std::string as_text(const Options& options, std::string_view format, const bench
   if (format == "github-action") return bench::report_github_action(rows);
   return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
          (suite.table ? suite.table(rows) : bench::report_table(rows));
-}
-
-/// Reads the report of an earlier run before the benchmark starts. Null if not requested.
-nlohmann::json earlier_run(const Options& options) {
-  if (options.compare.empty() && options.fail_above > 0)
-    throw Error(ExitCode::usage, "--fail-above {}: needs --compare", options.fail_above);
-  if (options.compare.empty()) return nullptr;
-  if (options.format != "table")
-    throw Error(ExitCode::usage,
-                "--compare with --format {}: both would be on stdout; allowed: --format table",
-                options.format);
-  nlohmann::json report = read_json(options.compare);
-  bench::compare_runs(
-      report, nlohmann::json{{"context", {{"schema", 2}}}, {"benchmarks", nlohmann::json::array()}},
-      options.compare);
-  return report;
 }
 
 /// Returns the files of the options; those of --plot as python/clpv/draw/bench.py names them.
@@ -126,7 +107,6 @@ void run(Options options, const Shared& shared) {
     charts.emplace("--plot", options.plot);
   }
   check_outputs(outputs_of(options));
-  const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite =
       *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   load_suite_scene(options);
@@ -146,21 +126,12 @@ void run(Options options, const Shared& shared) {
   else
     print_json(text(options.format));
   flush_data();
-  bench::ReportChanges changes;
-  if (!before.is_null()) {
-    changes = bench::compare_runs(before, report_of(options, session, rows), options.compare);
-    std::erase_if(changes.lost, [&](const bench::LostRow& row) {
-      return options.bench.filter && !std::regex_search(row.name, *options.bench.filter);
-    });
-    print_data("\n{}", bench::changes_table(changes));
-  }
   if (plot) {
     plot->add("bench.json", report_of(options, session, rows));
     plot->draw(options.plot);
   }
   session.programs().store();
   require_right_results(rows);
-  if (!before.is_null()) bench::require_ratios(changes, options.fail_above);
 }
 
 }  // namespace bench_command
@@ -194,9 +165,6 @@ void add_bench(CLI::App& app, Shared& shared) {
   add(*command, "--log", "FILE.jsonl", options->log,
       "log of row starts and ends, one JSON line each; after a crash its last line names the row");
   add(*command, "-o,--output", "FILE.json", options->output, "output file for the results, .json");
-  add(*command, "--compare", "OLD.json", options->compare,
-      "JSON of an earlier run, for a table of changes and their spread");
-  add_fail_above(*command, options->fail_above);
   add(*command, "--plot", "DIR", options->plot,
       "output folder for SVG and PNG charts of suite layouts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });

@@ -81,6 +81,12 @@ AddCommand add_devices, add_render, add_sequence, add_query, add_bake, add_check
     add_pathtrace, add_quality, add_basis, add_bench, add_report;
 AddCommand add_prepare;  // hidden: a helper process of the others
 
+/// Prints the changes of a report against an earlier one, for `clpv compare`. Throws
+/// Error(bad_input) if one is no report or if their kinds differ, Error(validation) if no row has a
+/// value in both, or, with a `limit` above 0, if a value has become larger than `limit` times the
+/// earlier one, beyond the spread, or is lost.
+void compare_reports(const std::string& after_file, const std::string& before_file, double limit);
+
 // main() of clpv, without the parser's headers, which take five seconds to compile.
 
 struct Additions;

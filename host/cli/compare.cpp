@@ -6,7 +6,6 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
 #include "cli/options.hpp"
@@ -89,16 +88,9 @@ bool is_report(const std::string& file) {
   return std::filesystem::path(file).extension() == ".json";
 }
 
-/// Compares reports of bench, quality or --stats.
-void compare_reports(const CompareOptions& options) {
-  const bench::ReportChanges changes =
-      bench::compare_runs(read_json(options.b), read_json(options.a), options.b, options.a);
-  print_text(bench::changes_table(changes));
-  bench::require_ratios(changes, options.fail_above);
-}
-
 void run(const CompareOptions& options) {
-  if (is_report(options.a) && is_report(options.b)) return compare_reports(options);
+  if (is_report(options.a) && is_report(options.b))
+    return compare_reports(options.a, options.b, options.fail_above);
   if (options.fail_above > 0)
     throw Error(ExitCode::usage,
                 "--fail-above {}: found {} and {}, allowed with two reports (.json)",
@@ -143,7 +135,11 @@ void add_compare(CLI::App& app, Shared&) {
              {-30, 30});
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
-  add_fail_above(*command, options->fail_above)->excludes("--output");
+  add_number(*command, "--fail-above", "RATIO", options->fail_above,
+             "exit with 5 if a value of the new report is more than RATIO times the earlier one, "
+             "beyond the spread, or is missing, or if no row has both values",
+             {1, 1e6})
+      ->excludes("--output");
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as "
       "stored: linear in EXR\n"

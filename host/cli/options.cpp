@@ -196,14 +196,6 @@ CLI::Option* add_format(CLI::App& command, std::string& format,
       ->capture_default_str();
 }
 
-CLI::Option* add_fail_above(CLI::App& command, double& ratio) {
-  return add_number(command, "--fail-above", "RATIO", ratio,
-                    "exit with 5 if a value of the new report is more than RATIO times the earlier "
-                    "one, beyond the "
-                    "spread, or is missing, or if no row has both values",
-                    {1, 1e6});
-}
-
 void require_extension(const std::string& option, const std::filesystem::path& file,
                        const std::vector<std::string>& allowed) {
   if (std::ranges::count(allowed, file.extension().string()) > 0) return;

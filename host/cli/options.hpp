@@ -136,9 +136,6 @@ void group_options(CLI::App& command);
 CLI::Option* add_format(CLI::App& command, std::string& format,
                         const std::vector<std::string>& formats = {"table", "json"});
 
-/// Adds --fail-above, for comparisons of two reports.
-CLI::Option* add_fail_above(CLI::App& command, double& ratio);
-
 /// Throws Error(usage) unless the file has one of these extensions (".exr").
 void require_extension(const std::string& option, const std::filesystem::path& file,
                        const std::vector<std::string>& allowed);

@@ -49,46 +49,32 @@ std::array<double, 3> volume_energy(Session& session, const Basis& basis, const 
   return energy;
 }
 
-/// Collects the statistics of one `clpv render`. Times are wall times unless the timer of a stage
-/// is "event".
-class FrameStats {
- public:
-  void begin_startup() { mark_ = Clock::now(); }
-  /// The device is open, programs are built, the scene is uploaded.
-  void end_startup() {
-    startup_ms_ = ms_since(mark_);
-    mark_ = Clock::now();
-  }
-  /// The first launches compile kernels for their work-group sizes.
-  void end_first_frame(Session& session) {
-    session.queue().finish();
-    first_frame_ms_ = ms_since(mark_);
-  }
-  /// Sets the times of the timed frames, of one camera. The statistics report their medians.
-  void set_times(FrameTimes times) { times_ = std::move(times); }
+/// Statistics of one `clpv render`. Times are wall times unless the timer of a stage is "event".
+struct FrameStats {
+  double startup_ms = 0;  ///< until the device is open, programs are built, the scene is uploaded
+  double first_frame_ms = 0;  ///< its launches compile kernels for their work-group sizes
+  FrameTimes timed;           ///< frames of one camera; their medians are reported
+  nlohmann::json energies = nlohmann::json::array();  ///< finest cascade first
+
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes) {
     const auto energy = [&](const Volume& volume, const Basis& basis) {
       std::array<double, 3> stored = volume_energy(session, basis, volume);
       for (double& watts : stored) watts /= volumes.light_scale;
       return stored;
     };
-    // Sort finest first, independent of the order of computation.
-    energies_.insert(energies_.begin(), {volumes.cascade, energy(volumes.injected, frame.basis()),
-                                         energy(volumes.accumulated, frame.gathered())});
+    nlohmann::json row{{"cascade", volumes.cascade},
+                       {"injected", energy(volumes.injected, frame.basis())},
+                       {"accumulated", energy(volumes.accumulated, frame.gathered())}};
+    energies.insert(energies.begin(), std::move(row));
   }
 
   /// Returns JSON of schema 2: device, options, times (`frame` on the host's clock, `host`: its
   /// work without waits, and the stages), kernels of one frame, timer of the stages, numbers of
   /// HostWork, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const {
-    nlohmann::json energy = nlohmann::json::array();
-    for (const Energy& e : energies_) {
-      energy.push_back(
-          {{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
-    }
     const auto samples = [&](const auto& part) {
       std::vector<double> values;
-      for (const FrameCost& cost : times_.costs()) values.push_back(part(cost));
+      for (const FrameCost& cost : timed.costs()) values.push_back(part(cost));
       return values;
     };
     std::vector<TimeRecord> times = {
@@ -98,7 +84,7 @@ class FrameStats {
       return median(samples([&](const FrameCost& cost) { return cost.host.*part; }));
     };
     nlohmann::json kernels = nlohmann::json::array();
-    for (const KernelTime& time : times_.kernels()) {
+    for (const KernelTime& time : timed.kernels()) {
       kernels.push_back({{"stage", name_of(time_record(time.mark, {time.ms}))},
                          {"kernel", time.kernel},
                          {"launches", time.launches},
@@ -107,13 +93,13 @@ class FrameStats {
                          {"ms", time.ms}});
     }
     const double frame_ms = times[0].median;
-    std::ranges::move(times_.stage_records(), std::back_inserter(times));
+    std::ranges::move(timed.stage_records(), std::back_inserter(times));
     return {{"schema", 2},
             {"device", clpv::to_json(session.device())},
             {"options", options},
             {"times", times},
             {"kernels", kernels},
-            {"timer", times_.from_events() ? "event" : "wall"},
+            {"timer", timed.from_events() ? "event" : "wall"},
             {"launches", of_host(&HostWork::launches)},
             {"fills", of_host(&HostWork::fills)},
             {"waits", of_host(&HostWork::waits)},
@@ -124,24 +110,12 @@ class FrameStats {
               {"arguments", of_host(&HostWork::arguments_ms)},
               {"enqueueing", of_host(&HostWork::enqueueing_ms)},
               {"waiting", of_host(&HostWork::waited_ms)}}},
-            {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
+            {"first_launch_ms", std::max(0.0, first_frame_ms - frame_ms)},
             {"build_ms", session.programs().build_ms()},
-            {"startup_ms", startup_ms_},
+            {"startup_ms", startup_ms},
             {"device_bytes", session.peak_device_bytes()},
-            {"energy", energy}};
+            {"energy", energies}};
   }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  struct Energy {
-    int cascade;
-    std::array<double, 3> injected, accumulated;
-  };
-  Clock::time_point mark_;
-  double startup_ms_ = 0, first_frame_ms_ = 0;
-  FrameTimes times_;
-  std::vector<Energy> energies_;
 };
 
 namespace render_command {
@@ -180,12 +154,12 @@ void run(const Options& options, const Shared& shared) {
   log_scene(scene, camera, resolved);
   progress.advance();
 
-  stats.begin_startup();
+  auto started = std::chrono::steady_clock::now();
   const Device device = choose_device(shared.device);
   Session session(device, ProgramCache::of_user(device),
                   compilation_of(request, resolved, shared.device), timed > 0);
   Frame frame(session, scene, setup);
-  stats.end_startup();
+  stats.startup_ms = ms_since(std::exchange(started, std::chrono::steady_clock::now()));
   log_debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
             session.device().driver);
   log_debug("options: {}", to_json(resolved).dump());
@@ -193,15 +167,15 @@ void run(const Options& options, const Shared& shared) {
   frame.render(camera, [&](const CascadeVolumes& volumes) {
     if (!options.stats.empty()) stats.add_energy(session, frame, volumes);
   });
-  stats.end_first_frame(session);
+  session.queue().finish();
+  stats.first_frame_ms = ms_since(started);
   warn_of_unreached(session, frame, camera.name);
   stop_if_interrupted();
   progress.advance();
   if (!options.stats.empty()) {
-    FrameTimes times =
+    stats.timed =
         measure_frames(session, frame, camera, timed, warm_up, [&] { progress.advance(); });
-    count_chains(session, frame, camera, times);
-    stats.set_times(std::move(times));
+    count_chains(session, frame, camera, stats.timed);
   }
 
   const auto image_of = [&](Show view) { return view_image(frame, view); };

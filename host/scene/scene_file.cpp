@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
@@ -148,35 +149,25 @@ SceneCamera read_camera(const json& given, double scale, const std::string& file
   return made;
 }
 
-/// JSON keys of a kind of light besides name, kind and colour.
-struct LightKeys {
-  std::vector<std::string> required, optional;
-};
-
-LightKeys keys_of(LightKind kind) {
-  switch (kind) {
-    case LightKind::directional:
-      return {{"direction", "illuminance_lux"}, {}};
-    case LightKind::spot:
-      return {{"position", "direction", "intensity_candela"},
-              {"range", "inner_cone_degrees", "outer_cone_degrees"}};
-    case LightKind::point:
-      return {{"position", "intensity_candela"}, {"range"}};
-  }
-  return {};
-}
-
-void check_light_keys(const json& given, LightKind light_kind, const std::string& file,
-                      const std::string& place) {
-  const LightKeys keys = keys_of(light_kind);
-  const std::string kind(name_of(light_kind));
-  for (const std::string& key : keys.required) {
+/// Rejects a light that lacks a key of its kind, or has one of another kind.
+void check_light_keys(const json& given, const std::string& file, const std::string& place) {
+  using Keys = std::set<std::string>;
+  static const std::map<std::string, std::pair<Keys, Keys>> kKeys{
+      // required, and optional
+      {"directional", {{"direction", "illuminance_lux"}, {}}},
+      {"spot",
+       {{"position", "direction", "intensity_candela"},
+        {"range", "inner_cone_degrees", "outer_cone_degrees"}}},
+      {"point", {{"position", "intensity_candela"}, {"range"}}}};
+  const std::string kind = given["kind"];
+  const auto& [required, optional] = kKeys.at(kind);
+  Keys allowed{"name", "kind", "colour"};
+  allowed.insert(optional.begin(), optional.end());
+  for (const std::string& key : required) {
     if (!given.contains(key))
       reject(file, pointer_to(place, key), "nothing", "a value: a " + kind + " light needs it");
+    allowed.insert(key);
   }
-  std::set<std::string> allowed = {"name", "kind", "colour"};
-  allowed.insert(keys.required.begin(), keys.required.end());
-  allowed.insert(keys.optional.begin(), keys.optional.end());
   for (const auto& [key, value] : given.items()) {
     if (!allowed.contains(key)) {
       reject(file, pointer_to(place, key), "a key that a " + kind + " light does not have",
@@ -189,7 +180,7 @@ SceneLight read_light(const json& given, double scale, const std::string& file,
                       const std::string& place) {
   Light light;
   light.kind = named<LightKind>("kind", given["kind"].get_ref<const std::string&>());
-  check_light_keys(given, light.kind, file, place);
+  check_light_keys(given, file, place);
   light.name = given.value("name", std::string());
   const double strength =
       given.value(given.contains("illuminance_lux") ? "illuminance_lux" : "intensity_candela", 0.0);

@@ -9,6 +9,7 @@ Frames are small while the camera moves, sharp when it rests, and then nearer to
 viser: python3 -m pip install viser==1.1.1 (in a virtual environment with --system-site-packages).
 """
 import argparse
+import collections
 import functools
 import io
 import logging
@@ -21,11 +22,69 @@ import time
 
 import clpv
 from clpv import view_controls, view_gate
-from clpv.view_frames import LEVELS, Client, Renderers, camera_of, next_client, size_of
 
 # Distance from the eye to the point that a drag turns the camera about, of the scene's diagonal.
 PIVOT = 0.03
 PATHS = 16    # paths of a path-traced pixel
+# Frames of a view that rests: seconds without a change, height [pixels], rays of the near field.
+LEVELS = (0, 288, "2"), (0.3, 720, "4"), (1, 720, "64")
+TRACED_AFTER = 1.5    # rest before a view is path-traced [s]
+MAX_RENDERERS = 4     # kept, by size and options
+RATE_SPAN = 1.0       # [s] of motion that the frame rate is measured over
+
+
+def size_of(height, aspect):
+    """Width and height of a frame; multiples of 8, so that small changes of the window need no new
+    renderer."""
+    return max(64, min(1920, 8 * round(height * aspect / 8))), height
+
+
+def camera_of(client):
+    """The camera of a browser: x right, y down, z forward, as viser has it."""
+    w, x, y, z = client.camera.wxyz
+    eye = client.camera.position
+    forward = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
+    down = 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)
+    return clpv.Camera(eye=eye, target=[e + f for e, f in zip(eye, forward)], up=[-d for d in down],
+                       fov=math.degrees(client.camera.fov))
+
+
+class Rate:
+    """Frames per second over the last second of motion; it stays while the camera rests."""
+
+    def __init__(self):
+        self.times, self.shown = collections.deque(), "-"
+
+    def add(self, now):
+        """A frame of a moving camera was shown at `now` [s]."""
+        self.times.append(now)
+        while now - self.times[0] > RATE_SPAN:
+            self.times.popleft()
+        if len(self.times) > 1:
+            self.shown = f"{(len(self.times) - 1) / (now - self.times[0]):.0f}"
+
+
+class Client:
+    """One browser: when its view last changed, and how many of LEVELS it has shown since."""
+
+    def __init__(self, handle):
+        self.handle, self.changed, self.shown = handle, time.monotonic(), 0
+        self.rate, self.served = Rate(), 0.0  # served: when it last got a frame
+        self.image = None  # (image, view, displayed pixels) of its last frame
+
+    def touch(self):
+        self.changed, self.shown = time.monotonic(), 0
+
+
+def next_client(clients, now, traced=False):
+    """The client with the fewest levels whose next one is due, of these the one that waits longest;
+    or None. traced: path tracing follows the last level."""
+    waits = [seconds for seconds, *_ in LEVELS] + [TRACED_AFTER] * traced
+    due = [
+        client for client in clients
+        if client.shown < len(waits) and now - client.changed >= waits[client.shown]
+    ]
+    return min(due, key=lambda client: (client.shown, client.served), default=None)
 
 
 class Interrupted(Exception):
@@ -37,7 +96,9 @@ class Viewer:
 
     def __init__(self, server, scene, device="", load=None):
         self.server, self.scene, self.load = server, scene, load
-        self.renderers = Renderers(scene, device)
+        self.renderer = functools.lru_cache(MAX_RENDERERS)(
+            lambda size, **options: clpv.Renderer(self.scene, device, width=size[0],
+                                                  height=size[1], **options))
         self.clients, self.lock, self.wake = {}, threading.Lock(), threading.Event()
         self.frames = 0  # rendered so far
         self.lights, self.sun = scene.lights, None
@@ -122,8 +183,8 @@ class Viewer:
         if sun:
             self.scene.lights = [sun]
         elif self.load:
-            self.scene = self.renderers.scene = self.load()
-            self.renderers.kept.cache_clear()
+            self.scene = self.load()
+            self.renderer.cache_clear()
         else:
             self.scene.lights = self.lights
 
@@ -134,7 +195,7 @@ class Viewer:
         _, height, rays = LEVELS[client.shown]
         size, view = size_of(height, handle.camera.aspect), self.controls.view.value
         self.update_lights()
-        renderer = self.renderers.get(size, self.controls.options(rays))
+        renderer = self.renderer(size, **self.controls.options(rays))
         if self.controls.automatic:  # a page's first camera may be anywhere
             self.controls.expose(renderer.render("full", self.scene.cameras[0]))
         image = renderer.render(view, camera_of(handle), time=self.controls.time.value)

@@ -67,15 +67,17 @@ py::array_t<double> vector_array(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
+py::array_t<double> vector_array(const std::vector<glm::dvec3>& rows) {
+  py::array_t<double> made({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
+  std::copy(rows.begin(), rows.end(), reinterpret_cast<glm::dvec3*>(made.mutable_data()));
+  return made;
+}
+
 /// (n,3): nodes of the quadrature that project() sums over.
 py::array_t<double> directions(const Basis& basis) {
-  const std::vector<QuadratureNode> nodes = quadrature(basis, octants());
-  py::array_t<double> found({static_cast<py::ssize_t>(nodes.size()), py::ssize_t{3}});
-  double* out = found.mutable_data();
-  for (const QuadratureNode& node : nodes) {
-    for (int i = 0; i < 3; ++i) *out++ = node.w[i];
-  }
-  return found;
+  std::vector<glm::dvec3> all;
+  for (const QuadratureNode& node : quadrature(basis, octants())) all.push_back(node.w);
+  return vector_array(all);
 }
 
 /// A^-1 Int b f dw by quadrature. Takes values, not a function: Python's exit ends daemon threads
@@ -149,15 +151,7 @@ void add_basis(py::module_& module) {
       "integrals", [](const Basis& b) { return vector_array(b.integrals()); },
       "Array (N,): integral of each function.");
   type.def_property_readonly(
-      "centres",
-      [](const Basis& b) {
-        py::array_t<double> made({static_cast<py::ssize_t>(b.centres().size()), py::ssize_t{3}});
-        double* out = made.mutable_data();
-        for (const glm::dvec3& centre : b.centres()) {
-          for (int i = 0; i < 3; ++i) *out++ = centre[i];
-        }
-        return made;
-      },
+      "centres", [](const Basis& b) { return vector_array(b.centres()); },
       "Array (N, 3) of unit vectors; (0, 3) without centres.");
   type.def_property_readonly(
       "bandwidths", [](const Basis& b) { return vector_array(b.lambdas()); },

@@ -150,9 +150,9 @@ void add_image(py::module_& module) {
   type.def(
       "save",
       [](const Image& image, const std::filesystem::path& path, std::optional<float> exposure) {
-        without_gil([&] { save_image(path, image, exposure); });
+        save_image(path, image, exposure);
       },
-      py::arg("path"), py::arg("exposure") = py::none(),
+      py::call_guard<WithoutGil>(), py::arg("path"), py::arg("exposure") = py::none(),
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with\n"
       "metadata, .png tone-mapped (photographic) after multiplication by 2^exposure [EV], on a\n"
       "black background. exposure=None: automatic_exposure().");

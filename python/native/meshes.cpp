@@ -42,7 +42,8 @@ int add_mesh(Scene& scene, const FloatArray& positions, const Array<std::int64_t
   const auto uv = rows<float, 2>("uvs", uvs);
   const auto c = rows<float, 4>("colours", colours, true);
   const Mesh mesh{p, t, n, uv, c, smooth, material.value_or(Material()), moves};
-  return without_gil([&] { return scene.add_mesh(mesh, transform.value_or(kIdentity)); });
+  const WithoutGil released;
+  return scene.add_mesh(mesh, transform.value_or(kIdentity));
 }
 
 /// uint8: sRGB-encoded, as they are; floats: linear, encoded.
@@ -100,34 +101,26 @@ void add_meshes(py::module_& module, py::class_<Scene>& type) {
       py::arg("given"),
       "A scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, instances, colours and\n"
       "base-colour textures.");
-  type.def(
-      "add_instance",
-      [](Scene& scene, int mesh, const Transform& transform) {
-        return without_gil([&] { return scene.add_instance(mesh, transform); });
-      },
-      py::arg("mesh"), py::arg("transform"),
-      "The same mesh at another place; its vertices are shared.");
-  type.def(
-      "remove_mesh", [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
-      py::arg("mesh"), "Removes a mesh from one of its places.");
+  const py::call_guard<WithoutGil> guard;
+  type.def("add_instance", &Scene::add_instance, guard, py::arg("mesh"), py::arg("transform"),
+           "The same mesh at another place; its vertices are shared.");
+  type.def("remove_mesh", &Scene::remove_mesh, guard, py::arg("mesh"),
+           "Removes a mesh from one of its places.");
   type.def(
       "set_positions",
       [](Scene& scene, int mesh, const FloatArray& positions, const Floats& normals) {
         const auto p = rows<float, 3>("positions", Floats(positions));
         const auto n = rows<float, 3>("normals", normals);
-        without_gil([&] { scene.set_positions(mesh, p, n); });
+        const WithoutGil released;
+        scene.set_positions(mesh, p, n);
       },
       py::arg("mesh"), py::arg("positions"), py::arg("normals") = py::none(),
       "Moves the vertices of a mesh, at all of its places. Normals that were given stay without\n"
       "`normals`. The next frame of each renderer recomputes what animation recomputes; at the\n"
       "first move of a mesh added without `moves`, and after an addition or removal, also its\n"
       "memory and what it caches.");
-  type.def(
-      "set_transform",
-      [](Scene& scene, int mesh, const Transform& transform) {
-        without_gil([&] { scene.set_transform(mesh, transform); });
-      },
-      py::arg("mesh"), py::arg("transform"), "Moves one place of a mesh. As set_positions().");
+  type.def("set_transform", &Scene::set_transform, guard, py::arg("mesh"), py::arg("transform"),
+           "Moves one place of a mesh. As set_positions().");
 }
 
 }  // namespace clpv::python

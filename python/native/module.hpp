@@ -90,16 +90,6 @@ inline std::vector<py::ssize_t> shape_with_last(const py::array& vectors, py::ss
   return shape;
 }
 
-/// An array that owns `values`, without a copy.
-inline py::array_t<float> array_of(std::vector<float> values,
-                                   const std::vector<py::ssize_t>& shape) {
-  auto owned = std::make_unique<std::vector<float>>(std::move(values));
-  const float* data = owned->data();
-  const py::capsule owner(owned.release(),
-                          [](void* p) { delete static_cast<std::vector<float>*>(p); });
-  return py::array_t<float>(shape, data, owner);
-}
-
 using Vectors = std::span<const std::array<float, 3>>;
 
 /// The vectors of an array.
@@ -112,10 +102,6 @@ inline py::array_t<float> array_of(Vectors values, const std::vector<py::ssize_t
   py::array_t<float> result(shape);
   if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size_bytes());
   return result;
-}
-
-inline py::tuple tuple_of(const Vec3& v) {
-  return py::make_tuple(v[0], v[1], v[2]);
 }
 
 /// A call that may release the GIL and works with a device or threads. The constructor throws
@@ -144,13 +130,11 @@ void note_device_use();
 /// Returns true in a process forked from a marked one.
 bool forked_from_device_use();
 
-/// Runs a short `action` without the GIL.
-template <typename Action>
-auto without_gil(const Action& action) {
-  const RunningCall call;
-  py::gil_scoped_release released;
-  return action();
-}
+/// Guard of a short call without the GIL (py::call_guard).
+struct WithoutGil {
+  RunningCall call = {};
+  py::gil_scoped_release released = {};
+};
 
 /// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile.
 /// After Ctrl-C the work ends at its next step, and the signal's exception is raised. `poll` runs
@@ -196,6 +180,16 @@ auto interruptible(const Work& work, const Poll& poll) {
 template <typename Work>
 auto interruptible(const Work& work) {
   return interruptible(work, [] {});
+}
+
+/// Calls `work` with the eye or the camera that light is computed for. Throws Error(usage) for
+/// both.
+template <typename Work>
+auto seen_from(const std::optional<Vec3>& eye, const std::optional<CameraChoice>& camera,
+               const Work& work) {
+  if (eye && camera)
+    throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");
+  return interruptible([&] { return eye ? work(*eye) : work(camera.value_or(CameraChoice())); });
 }
 
 /// Fields of a class of python/clpv/values.py, in C++.
@@ -265,7 +259,7 @@ struct pyobject_caster<clpv::python::Array<T>> {
   clpv::python::CallInProgress in_progress_;  // NumPy's copies release the GIL
 };
 
-/// A column of a table counts in the order of its items: its subscripts may be labels.
+/// A tuple. A column of a table counts in the order of its items: its subscripts may be labels.
 template <>
 struct type_caster<clpv::Vec3> : array_caster<clpv::Vec3, double, false, 3> {
   static constexpr auto name = const_name("Vector");
@@ -274,6 +268,9 @@ struct type_caster<clpv::Vec3> : array_caster<clpv::Vec3, double, false, 3> {
     const bool column = hasattr(given, "tolist");
     const auto items = column ? given.attr("tolist")() : reinterpret_borrow<object>(given);
     return array_caster::load(items, convert);
+  }
+  static handle cast(const clpv::Vec3& v, return_value_policy, handle) {
+    return make_tuple(v[0], v[1], v[2]).release();
   }
 };
 
@@ -339,6 +336,7 @@ struct type_caster<T> {
     return true;
   }
   static handle cast(const T& given, return_value_policy, handle) {
+    const clpv::python::CallInProgress in_progress;  // Python's code below may release the GIL
     dict all;
     std::apply([&](const auto&... each) { ((all[each.first] = given.*each.second), ...); },
                Fields::kAll);

@@ -8,11 +8,6 @@
 #include "options/show.hpp"
 
 namespace clpv::python {
-
-struct PythonFrame {
-  opencl::Frame frame;
-};
-
 namespace {
 
 /// A handle as an integer; None for null.
@@ -38,18 +33,16 @@ void add_classes(py::module_& module) {
       "this object.");
   event.def("wait", &wait_for, "Waits for the commands. Raises ResourceError if they failed.");
 
-  py::class_<PythonFrame> frame(
+  py::class_<opencl::Frame> frame(
       module, "DeviceFrame",
       "Device memory of a frame: integers for pyopencl.MemoryObject.from_int_ptr(number, "
       "retain=True), row 0 at the top.\n\n"
       "The renderer's next call that renders overwrites it.");
-  frame.def_property_readonly(
-      "width", [](const PythonFrame& f) { return f.frame.width; }, "Pixels of a row.");
-  frame.def_property_readonly(
-      "height", [](const PythonFrame& f) { return f.frame.height; }, "Rows.");
+  frame.def_readonly("width", &opencl::Frame::width, "Pixels of a row.");
+  frame.def_readonly("height", &opencl::Frame::height, "Rows.");
   const auto memory = [&](const char* name, cl_mem opencl::Frame::*member, const char* doc) {
     frame.def_property_readonly(
-        name, [member](const PythonFrame& f) { return number_of(f.frame.*member); }, doc);
+        name, [member](const opencl::Frame& f) { return number_of(f.*member); }, doc);
   };
   memory("image", &opencl::Frame::image,
          "float4 per pixel: R, G, B, A of the view, linear, without a sky.");
@@ -58,10 +51,10 @@ void add_classes(py::module_& module) {
   memory("depth", &opencl::Frame::depth, "float per pixel [m]; 0 without a surface.");
   memory("normals", &opencl::Frame::normals, "float4 per pixel: unit normal, and 0.");
   frame.def_property_readonly(
-      "int_ptr", [](const PythonFrame& f) { return number_of(f.frame.done.get()); },
+      "int_ptr", [](const opencl::Frame& f) { return number_of(f.done.get()); },
       "The cl_event of the whole frame.");
   frame.def(
-      "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
+      "wait", [](const opencl::Frame& f) { wait_for(f.done); },
       "Waits for the frame. Raises ResourceError if it failed.");
 
   py::class_<opencl::Volumes> volumes(module, "DeviceVolumes",
@@ -91,9 +84,8 @@ void add_opencl(py::module_& module, RendererClass& type) {
       "enqueue",
       [](Renderer& renderer, View view, const std::optional<CameraChoice>& camera, double time,
          const ImageSize& size) {
-        return interruptible([&] {
-          return PythonFrame{renderer.enqueue(view, camera.value_or(CameraChoice()), time, size)};
-        });
+        return interruptible(
+            [&] { return renderer.enqueue(view, camera.value_or(CameraChoice()), time, size); });
       },
       py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(),
       py::arg("time") = 0.0, py::arg("size") = py::none(),
@@ -104,17 +96,14 @@ void add_opencl(py::module_& module, RendererClass& type) {
       [](Renderer& renderer, int width, int height, const py::object& normals,
          const py::object& positions, const py::object& depths, const py::object& irradiance,
          const std::optional<Vec3>& eye, const std::optional<CameraChoice>& camera, double time) {
-        if (eye && camera)
-          throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");
         const opencl::GBuffer surfaces{width,
                                        height,
                                        handle_of<cl_mem>(normals, "normals", kMemoryClass),
                                        handle_of<cl_mem>(positions, "positions", kMemoryClass),
                                        handle_of<cl_mem>(depths, "depths", kMemoryClass),
                                        handle_of<cl_mem>(irradiance, "irradiance", kMemoryClass)};
-        return interruptible([&] {
-          return eye ? renderer.enqueue_light(surfaces, *eye, time)
-                     : renderer.enqueue_light(surfaces, camera.value_or(CameraChoice()), time);
+        return seen_from(eye, camera, [&](const auto& place) {
+          return renderer.enqueue_light(surfaces, place, time);
         });
       },
       py::keep_alive<0, 1>(), py::arg("width"), py::arg("height"), py::kw_only(),

@@ -2,22 +2,20 @@
 // Renderer, Volume and pathtrace.
 #include "clpv/renderer.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <atomic>
+#include <nlohmann/json.hpp>
 
 #include "clpv/opencl.hpp"
 #include "clpv/pathtrace.hpp"
 #include "module.hpp"
 #include "opencl_handle.hpp"
 #include "options/show.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv::python {
-
-/// Light of a cascade; the coefficients are a view that keeps it alive.
-struct PythonVolume {
-  LightVolume volume;
-  py::array_t<float> coefficients;
-};
 
 void ReleaseUnlessForked::operator()(Renderer* renderer) const {
   if (!forked_from_device_use()) delete renderer;
@@ -47,26 +45,15 @@ Options options_of(const py::kwargs& given) {
   return options;
 }
 
-CameraChoice camera_choice(const std::optional<CameraChoice>& given) {
-  return given.value_or(CameraChoice());
-}
-
-py::dict dict_of(const Stats& stats) {
-  py::dict all;
-  py::list times;
-  for (const TimeRecord& time : stats.times) {
-    times.append(py::dict(py::arg("stage") = time.stage, py::arg("cascade") = time.cascade,
-                          py::arg("light") = time.light, py::arg("n") = time.n,
-                          py::arg("min") = time.min, py::arg("median") = time.median,
-                          py::arg("mad") = time.mad, py::arg("max") = time.max));
-  }
-  all["times"] = times;
-  all["launches"] = stats.launches;
-  all["waits"] = stats.waits;
-  all["build"] = stats.build_ms;
-  all["device_bytes"] = stats.device_bytes;
-  all["peak_device_bytes"] = stats.peak_device_bytes;
-  return all;
+py::object dict_of(const Stats& stats) {
+  const nlohmann::json all{{"times", stats.times},
+                           {"launches", stats.launches},
+                           {"waits", stats.waits},
+                           {"build", stats.build_ms},
+                           {"device_bytes", stats.device_bytes},
+                           {"peak_device_bytes", stats.peak_device_bytes}};
+  const CallInProgress in_progress;  // of Python's code, which may release the GIL
+  return py::module_::import("json").attr("loads")(all.dump());
 }
 
 using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(Vectors, Vectors);
@@ -103,8 +90,6 @@ py::array_t<float> light(Renderer& renderer, const FloatArray& normals,
   if (positions.has_value() == depths.has_value())
     throw Error(ExitCode::usage, "positions and depths: found {}, allowed: one of them",
                 depths ? "both" : "neither");
-  if (eye && camera)
-    throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");
   GBuffer surfaces{.width = static_cast<int>(normals.shape(1)),
                    .height = static_cast<int>(normals.shape(0)),
                    .normals = span_of(normals)};
@@ -115,43 +100,31 @@ py::array_t<float> light(Renderer& renderer, const FloatArray& normals,
     require("depths", *depths, {normals.shape(0), normals.shape(1)});
     surfaces.depths = std::span(depths->data(), static_cast<std::size_t>(depths->size()));
   }
-  const auto found = interruptible([&] {
-    return eye ? renderer.light(surfaces, *eye, time)
-               : renderer.light(surfaces, camera_choice(camera), time);
-  });
+  const auto found = seen_from(
+      eye, camera, [&](const auto& place) { return renderer.light(surfaces, place, time); });
   return array_of(found, shape_with_last(normals, 3));
 }
 
-std::vector<PythonVolume> volumes(Renderer& renderer) {
-  std::vector<PythonVolume> all;
-  for (LightVolume& volume : interruptible([&] { return renderer.volumes(); })) {
-    auto values =
-        array_of(std::move(volume.values), {3, volume.coefficients, volume.n, volume.n, volume.n});
-    all.push_back({std::move(volume), std::move(values)});
-  }
-  return all;
-}
-
 void add_volume(py::module_& module) {
-  py::class_<PythonVolume> type(module, "Volume",
-                                "Light of one cascade after propagation: n^3 cubic cells.");
-  type.def_property_readonly(
-      "origin", [](const PythonVolume& v) { return tuple_of(v.volume.origin); },
-      "Minimum corner x, y, z [m].");
-  type.def_property_readonly(
-      "cell", [](const PythonVolume& v) { return v.volume.cell; }, "Edge of a cell [m].");
-  type.def_property_readonly(
-      "basis", [](const PythonVolume& v) { return v.volume.basis; },
-      "Name of the basis of the coefficients: sh3 after a sweep, else that of option basis.");
+  py::class_<LightVolume> type(module, "Volume",
+                               "Light of one cascade after propagation: n^3 cubic cells.");
+  type.def_readonly("origin", &LightVolume::origin, "Minimum corner x, y, z [m].");
+  type.def_readonly("cell", &LightVolume::cell, "Edge of a cell [m].");
   type.def_readonly(
-      "coefficients", &PythonVolume::coefficients,
+      "basis", &LightVolume::basis,
+      "Name of the basis of the coefficients: sh3 after a sweep, else that of option basis.");
+  type.def_property_readonly(
+      "coefficients",
+      [](const py::object& self) {
+        const auto& v = self.cast<const LightVolume&>();
+        return py::array_t<float>({3, v.coefficients, v.n, v.n, v.n}, v.values.data(), self);
+      },
       "float32 array (3, N, z, y, x): red, green, blue; N coefficients c_i of radiant intensity\n"
       "I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I /\n"
       "cell^2 is the radiance [W/m^2/sr] about the cell's centre.");
-  type.def("__repr__", [](const PythonVolume& v) {
-    return fmt::format("Volume(origin=({}, {}, {}), cell={}, n={}, basis='{}')", v.volume.origin[0],
-                       v.volume.origin[1], v.volume.origin[2], v.volume.cell, v.volume.n,
-                       v.volume.basis);
+  type.def("__repr__", [](const LightVolume& v) {
+    return fmt::format("Volume(origin=({}), cell={}, n={}, basis='{}')", fmt::join(v.origin, ", "),
+                       v.cell, v.n, v.basis);
   });
 }
 
@@ -189,7 +162,7 @@ void add_renderer(py::module_& module) {
       [](Renderer& renderer, View view, const std::optional<CameraChoice>& camera, double time,
          const ImageSize& size) {
         return interruptible(
-            [&] { return renderer.render(view, camera_choice(camera), time, size); });
+            [&] { return renderer.render(view, camera.value_or(CameraChoice()), time, size); });
       },
       py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
       py::arg("size") = py::none(),
@@ -250,7 +223,10 @@ void add_renderer(py::module_& module) {
       "with gather 'all'.");
   type.def("__repr__",
            [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
-  type.def("volumes", &volumes, "Light of the last frame, finest cascade first.");
+  type.def(
+      "volumes",
+      [](Renderer& renderer) { return interruptible([&] { return renderer.volumes(); }); },
+      "Light of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
       [](const Renderer& renderer) {
@@ -284,7 +260,8 @@ void add_renderer(py::module_& module) {
           (*progress)(told);
         };
         return interruptible(
-            [&] { return pathtrace(scene, views, camera_choice(camera), options); }, tell);
+            [&] { return pathtrace(scene, views, camera.value_or(CameraChoice()), options); },
+            tell);
       },
       py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(),
       py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = "all",

@@ -49,32 +49,29 @@ void add_scene(py::module_& module) {
            }),
            py::arg("path") = py::none(), py::arg("model") = py::none());
   add_meshes(module, type);
-  type.def("__repr__", [](const Scene& scene) {
-    return without_gil([&] {
-      const std::shared_lock lock(scene.contents().mutex);
-      const SceneData& data = scene.contents().moving.scene();
-      return fmt::format("Scene('{}', {} triangles, {} cameras, {} lights)", data.path,
-                         data.triangles.size(), data.cameras.size(), data.lights.size());
-    });
-  });
+  type.def(
+      "__repr__",
+      [](const Scene& scene) {
+        const std::shared_lock lock(scene.contents().mutex);
+        const SceneData& data = scene.contents().moving.scene();
+        return fmt::format("Scene('{}', {} triangles, {} cameras, {} lights)", data.path,
+                           data.triangles.size(), data.cameras.size(), data.lights.size());
+      },
+      py::call_guard<WithoutGil>());
+  const auto setter = [](auto method) {
+    return py::cpp_function(method, py::call_guard<WithoutGil>());
+  };
   type.def_property(
       "cameras", [](const Scene& scene) { return py::tuple(py::cast(scene.cameras())); },
-      [](Scene& scene, const std::vector<Camera>& cameras) {
-        without_gil([&] { scene.set_cameras(cameras); });
-      },
+      setter(&Scene::set_cameras),
       "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
   type.def_property(
       "lights", [](const Scene& scene) { return py::tuple(py::cast(scene.lights())); },
-      [](Scene& scene, const std::vector<Light>& lights) {
-        without_gil([&] { scene.set_lights(lights); });
-      },
+      setter(&Scene::set_lights),
       "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame\n"
       "of every renderer of this scene recomputes what depends on them.");
   type.def_property(
-      "medium", &Scene::medium,
-      [](Scene& scene, const std::optional<Medium>& medium) {
-        without_gil([&] { scene.set_medium(medium); });
-      },
+      "medium", &Scene::medium, setter(&Scene::set_medium),
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene "
       "allocates its memory again.");
   type.def(
@@ -91,11 +88,7 @@ void add_scene(py::module_& module) {
       "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },
       "One sentence for each thing skipped or added by the loader.");
   type.def_property_readonly(
-      "bounds",
-      [](const Scene& scene) {
-        const auto bounds = scene.bounds();
-        return py::make_tuple(tuple_of(bounds[0]), tuple_of(bounds[1]));
-      },
+      "bounds", [](const Scene& scene) { return py::tuple(py::cast(scene.bounds())); },
       "Lower and upper corner of the bounding box [m], at 0 s.");
   type.def_property_readonly("exposure", &Scene::exposure,
                              "Exposure of the scene file [EV], or None.");

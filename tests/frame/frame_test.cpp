@@ -61,9 +61,7 @@ Image render(const SceneData& scene, const RenderOptions& options, Show view,
              const std::string& camera = {}) {
   Frame frame(test::test_session(), scene, options);
   frame.render(scene.camera(camera));
-  Image image = make_image(options.width, options.height, {"R", "G", "B", "A"});
-  image.pixels = frame.read(view);
-  return image;
+  return view_image(frame, view);
 }
 
 /// Holds a frame against tests/golden/NAME.exr; with CLPV_WRITE_GOLDEN set, writes it instead.

@@ -179,11 +179,9 @@ void image(std::string_view bytes) {
 }
 
 /// Larger images take a decoder seconds and find no further faults.
-constexpr std::uint32_t kSide = 512;
-
 bool is_small(std::span<const std::uint8_t> bytes) {
   const auto header = read_image_header(bytes);
-  return !header || (header->width <= kSide && header->height <= kSide);
+  return !header || std::max(header->width, header->height) <= kImageLimits.side;
 }
 
 /// A texture: bytes of a buffer, which say themselves whether they are a PNG, a JPEG or a WebP.

@@ -40,7 +40,6 @@ struct ExrPart {
   std::vector<std::string> integers{};  ///< channels of type UINT; the others are FLOAT
   std::vector<float> chromaticities{};  ///< attribute, unless empty
   std::string attributes = {};          ///< more of them
-  std::uint32_t sampling = 1;
 };
 
 inline std::string exr_attribute(const std::string& name, const std::string& type,
@@ -61,9 +60,7 @@ inline bool is_integer(const ExrPart& part, const std::string& channel) {
 inline std::string exr_header(const ExrPart& part, bool several) {
   std::string channels;
   for (const std::string& name : part.channels)
-    channels += name + '\0' +
-                bytes_of<std::uint32_t>(
-                    {is_integer(part, name) ? 0u : 2u, 0, part.sampling, part.sampling});
+    channels += name + '\0' + bytes_of<std::uint32_t>({is_integer(part, name) ? 0u : 2u, 0, 1, 1});
   const int rows = part.data.bottom - part.data.top + 1;
   std::string header = exr_attribute("channels", "chlist", channels + '\0') +
                        exr_attribute("compression", "compression", std::string(1, '\0')) +
@@ -147,12 +144,8 @@ test::ExrPart grey(const test::ExrBox& data, const test::ExrBox& display = kDisp
   return {.channels = {"B", "G", "R"}, .data = data, .display = display, .value = pattern};
 }
 
-Image decoded(const std::string& name, const std::string& bytes) {
-  return decode_image(name, bytes);
-}
-
 Image exr(const std::vector<test::ExrPart>& parts) {
-  return decoded("a.exr", test::exr_file(parts));
+  return decode_image("a.exr", test::exr_file(parts));
 }
 
 std::string rejection(const std::string& name, const std::string& bytes) {
@@ -328,13 +321,10 @@ TEST(ExrParts, HaveUniqueNamesAndOneDisplayWindow) {
                         "(23, 12)"));
 }
 
-TEST(ExrKinds, CubeMapsAndSampledChannelsAreRejected) {
+TEST(ExrKinds, CubeMapsAreRejected) {
   test::ExrPart cube = grey(kDisplay);
   cube.attributes = test::exr_attribute("envmap", "envmap", "\1");
   EXPECT_THAT(rejection({cube}), HasSubstr("cube map"));
-  test::ExrPart sampled = grey(kDisplay);
-  sampled.sampling = 2;
-  EXPECT_THAT(rejection({sampled}), HasSubstr("channel 'B' sampled every 2 x 2 pixels"));
 }
 
 void expect_rows(const Chromaticities& from, const double (&expected)[3][3]) {
@@ -380,7 +370,7 @@ TEST(Primaries, ColoursOfAnExrAreThoseOfRec709) {
 
 TEST(PngKinds, AreConverted) {
   const auto png = [](std::string_view base64) {
-    return decoded("a.png", test::decode_base64(base64));
+    return decode_image("a.png", test::decode_base64(base64));
   };
   EXPECT_NEAR(png(test::kPngGrey).at(0, 0, 0) * 255, 77, 1e-3);
   EXPECT_THAT(png(test::kPngGrey).channels, ElementsAre("Y"));
@@ -398,7 +388,7 @@ std::string with_chunk(const std::string& type, const std::string& data) {
 }
 
 TEST(PngKinds, ColourDataOtherThanSrgbIsNamed) {
-  const auto notes = [](const std::string& png) { return decoded("a.png", png).notes; };
+  const auto notes = [](const std::string& png) { return decode_image("a.png", png).notes; };
   EXPECT_THAT(notes(with_chunk("gAMA", "\0\1\x86\xa0"s)),
               ElementsAre("gAMA 1: not read; values are taken as sRGB"));
   EXPECT_THAT(notes(with_chunk("gAMA", "\0\0\xb1\x8f"s)), IsEmpty());

@@ -12,6 +12,7 @@
 #include <ctime>
 #include <map>
 #include <random>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,10 +64,8 @@ std::string drawn_value(const OptionDescription& option, Choices& choices, const
   const std::string& allowed = option.allowed;
   if (allowed.find('|') != std::string::npos) {
     std::vector<std::string> names;
-    for (std::size_t from = 0, to; from <= allowed.size(); from = to + 1) {
-      to = std::min(allowed.find('|', from), allowed.size());
-      names.push_back(allowed.substr(from, to - from));
-    }
+    std::istringstream all(allowed);
+    for (std::string name; std::getline(all, name, '|');) names.push_back(name);
     return choices.of(names);
   }
   constexpr std::string_view kAbove = "greater than ", kBelow = " and less than ";

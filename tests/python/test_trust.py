@@ -27,7 +27,7 @@ renderer.render()
 # Each once aborted with 'terminate called'.
 @pytest.mark.parametrize("work", [
     "renderer.render()", "clpv.pathtrace(scene, samples=1 << 20)", "renderer.render().save(path)",
-    "scene.lights = scene.lights",
+    "scene.lights = scene.lights", "scene.cameras", "renderer.stats",
     "basis = clpv.Basis('sh4'); basis.project(basis.directions()[:, 0])"
 ])
 def test_exit_while_a_daemon_thread_works(tmp_path, work):

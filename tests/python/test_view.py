@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 import clpv
-from clpv import view, view_controls, view_frames, view_gate
+from clpv import view, view_controls, view_gate
 from conftest import CORNELL, ROOT
 
 
@@ -38,11 +38,11 @@ def test_the_camera_of_a_browser():
         return types.SimpleNamespace(
             camera=types.SimpleNamespace(wxyz=wxyz, position=(1, 2, 3), fov=math.pi / 3))
 
-    ahead = view_frames.camera_of(handle((1, 0, 0, 0)))
+    ahead = view.camera_of(handle((1, 0, 0, 0)))
     assert ahead.eye == (1, 2, 3) and ahead.target == (1, 2, 4) and ahead.up == (0, -1, 0)
     assert ahead.fov == pytest.approx(60)
     half = math.sqrt(0.5)
-    turned = view_frames.camera_of(handle((half, 0, half, 0)))  # by 90 degrees about y
+    turned = view.camera_of(handle((half, 0, half, 0)))  # by 90 degrees about y
     assert np.allclose(np.subtract(turned.target, turned.eye), (1, 0, 0))
 
 
@@ -54,27 +54,27 @@ def test_each_choice_offers_its_default():
 
 
 def test_sizes_and_suns():
-    assert view_frames.size_of(288, 16 / 9) == (512, 288)
-    assert view_frames.size_of(288, 0.01)[0] == 64 and view_frames.size_of(720, 50)[0] == 1920
+    assert view.size_of(288, 16 / 9) == (512, 288)
+    assert view.size_of(288, 0.01)[0] == 64 and view.size_of(720, 50)[0] == 1920
     assert np.allclose(view_controls.sun_direction(0, 90), (0, -1, 0), atol=1e-9)
     assert np.allclose(np.linalg.norm(view_controls.sun_direction(70, 20)), 1)
 
 
 def test_a_view_that_rests_is_drawn_again_with_more_rays():
-    client, other = view_frames.Client(None), view_frames.Client(None)
+    client, other = view.Client(None), view.Client(None)
     client.changed = other.changed = 0
     drawn = []
     for now in (0, 0.1, 0.4, 0.5, 2, 3):
-        due = view_frames.next_client([client], now)
+        due = view.next_client([client], now)
         if due:
-            drawn.append((now, *view_frames.LEVELS[due.shown][1:]))
+            drawn.append((now, *view.LEVELS[due.shown][1:]))
             due.shown += 1
     assert drawn == [(0, 288, "2"), (0.4, 720, "4"), (2, 720, "64")]
-    assert view_frames.next_client([client, other], 3) is other
+    assert view.next_client([client, other], 3) is other
     client.shown = 2
-    assert view_frames.next_client([client, other], 3) is other
+    assert view.next_client([client, other], 3) is other
     client.touch()
-    assert view_frames.next_client([client], client.changed) is client and client.shown == 0
+    assert view.next_client([client], client.changed) is client and client.shown == 0
 
 
 def image_of(*pixels):
@@ -303,13 +303,13 @@ def test_the_lights_move_again_without_the_sun():
     controls = types.SimpleNamespace(sun_light=lambda: sun)
     made = types.SimpleNamespace(controls=controls, sun=None, scene=scene, lights=scene.lights,
                                  load=lambda: clpv.Scene(ROOT / "scenes/atrium_living.json"),
-                                 renderers=view_frames.Renderers(scene, ""))
+                                 renderer=mock.Mock())
     sun = clpv.Light(direction=(0, -1, 0), name="sun")
     view.Viewer.update_lights(made)
     assert made.scene.lights == (sun, )
     sun = None
     view.Viewer.update_lights(made)
-    assert made.scene is not scene and made.renderers.scene is made.scene
+    assert made.scene is not scene and made.renderer.cache_clear.called
     assert made.scene.lights == made.lights and made.scene.moves
 
 

@@ -11,7 +11,17 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-struct GltfMaterialTest : GltfTest {};
+struct GltfMaterialTest : GltfTest {
+  /// Texels of an image that `texture` names.
+  std::vector<std::uint8_t> rgba(std::string_view image, const json& texture = {{"source", 0}}) {
+    model = GltfBuilder();
+    textured(image);
+    model.document["textures"] = {texture};
+    if (texture.contains("extensions")) model.document["extensionsRequired"] = {"EXT_texture_webp"};
+    textured_triangle();
+    return load().textures.at(0).rgba;
+  }
+};
 
 TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
   model.document["materials"] = json::parse(R"([
@@ -73,12 +83,6 @@ TEST_F(GltfMaterialTest, TexturesKeepTheirBytes) {
 }
 
 TEST_F(GltfMaterialTest, ImagesOfOtherKindsBecomeRgba) {
-  const auto rgba = [&](std::string_view image) {
-    GltfTest::model = GltfBuilder();
-    textured(image);
-    textured_triangle();
-    return load().textures.at(0).rgba;
-  };
   EXPECT_THAT(rgba(kPngGrey), ElementsAre(77, 77, 77, 255));
   EXPECT_THAT(rgba(kPngGrey16), ElementsAre(77, 77, 77, 255));
   EXPECT_THAT(rgba(kPngPalette), ElementsAre(10, 20, 30, 255));
@@ -93,21 +97,13 @@ TEST_F(GltfMaterialTest, ImagesOfOtherKindsBecomeRgba) {
 }
 
 TEST_F(GltfMaterialTest, WebpIsDecoded) {
-  const auto rgba = [&](std::string_view image) {
-    GltfTest::model = GltfBuilder();
-    textured(image);
-    GltfTest::model.document["textures"] = {
-        {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
-    GltfTest::model.document["extensionsRequired"] = {"EXT_texture_webp"};
-    textured_triangle();
-    return load().textures.at(0).rgba;
-  };
-  EXPECT_THAT(rgba(kWebpRgba2x2),
+  const json webp{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+  EXPECT_THAT(rgba(kWebpRgba2x2, webp),
               ElementsAre(255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 10, 128, 128, 128, 255))
       << "not multiplied by alpha";
   for (const auto& [image, alpha] :
        std::vector<std::pair<std::string_view, int>>{{kWebpLossy, 255}, {kWebpLossyAlpha, 128}}) {
-    const auto lossy = rgba(image);
+    const auto lossy = rgba(image, webp);
     ASSERT_EQ(lossy.size(), 64u);
     const int expected[] = {200, 100, 50, alpha};
     for (std::size_t i = 0; i < lossy.size(); ++i) EXPECT_NEAR(lossy[i], expected[i % 4], 2) << i;

@@ -3,10 +3,9 @@
 // work-items of one or eight cells.
 #include "volume/volume.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <random>
 
 #include "pipeline/steps/propagate.hpp"
@@ -19,19 +18,15 @@ namespace {
 
 using test::test_session;
 
-constexpr double kHalf = 1.0 / 2048;  // half a unit in the last place of 11 bits, relative
-
-std::vector<float> random_values(std::size_t count) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<float> uniform(-1, 1);
-  std::vector<float> values(count);
-  for (float& value : values) value = uniform(random);
-  return values;
-}
+constexpr float kHalf = 1.0f / 2048;  // half a unit in the last place of 11 bits below 1
 
 std::vector<float> random_values(const VolumeShape& shape) {
-  const auto n = static_cast<std::size_t>(shape.n);
-  return random_values(n * n * n * static_cast<std::size_t>(shape.coefficients * shape.channels));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  const int cells = shape.n * shape.n * shape.n;
+  std::vector<float> values(static_cast<std::size_t>(cells * shape.coefficients * shape.channels));
+  for (float& value : values) value = uniform(random);
+  return values;
 }
 
 /// Formats this device has, the default one among them.
@@ -41,17 +36,6 @@ std::vector<VolumeFormat> formats(const VolumeShape& shape) {
     if (!unsupported(test_session().device(), format, shape)) found.push_back(format);
   }
   return found;
-}
-
-void expect_near(const std::vector<float>& found, const std::vector<float>& wanted,
-                 double allowed) {
-  ASSERT_EQ(found.size(), wanted.size());
-  double largest = 0;
-  for (const float value : wanted)
-    largest = std::max(largest, std::abs(static_cast<double>(value)));
-  ASSERT_GT(largest, 0);
-  for (std::size_t i = 0; i < found.size(); ++i)
-    ASSERT_NEAR(found[i], wanted[i], allowed * largest) << i;
 }
 
 TEST(Volume, ReadsBackWhatWasWritten) {
@@ -65,16 +49,13 @@ TEST(Volume, ReadsBackWhatWasWritten) {
       Volume volume(test_session(), shape, "test", format);
       volume.write(test_session(), values);
       const std::vector<float> found = volume.read(test_session());
-      if (format.storage == Storage::float32) {
-        EXPECT_EQ(found, values);
-      } else {
-        expect_near(found, values, kHalf);
-      }
+      const float allowed = format.storage == Storage::float32 ? 0 : kHalf;
+      EXPECT_THAT(found, ::testing::Pointwise(::testing::FloatNear(allowed), values));
       Volume copy(test_session(), shape, "copy", format);
       copy.copy_from(test_session(), volume);
       EXPECT_EQ(copy.read(test_session()), found);
       volume.clear(test_session());
-      for (const float value : volume.read(test_session())) ASSERT_EQ(value, 0.0f);
+      EXPECT_THAT(volume.read(test_session()), ::testing::Each(0.0f));
     }
   }
 }
