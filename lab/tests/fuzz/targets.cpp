@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fuzz targets, by name: each has a corpus/NAME. libFuzzer calls them with generated inputs
-// (lab/scripts/fuzz); without it, this program gives a target each file of a folder (a test of every
-// build):
+// (lab/scripts/fuzz); without it, this program gives a target each file of a folder (a test of
+// every build):
 //
 //   fuzz FOLDER       the target is CLPV_FUZZ_TARGET
 //
