@@ -29,16 +29,6 @@ def native():
     return clpv
 
 
-def lab(module, *arguments):
-    """Runs a module of the lab's Python package. Returns its stdout; None without a lab."""
-    if not (BUILD / "python/clpv_lab").is_dir():
-        print(f"skipped: {module}: the lab is not built (-DCLPV_LAB=ON)", file=sys.stderr)
-        return None
-    return subprocess.run([sys.executable, "-B", "-m", module, *arguments], check=True, cwd=ROOT,
-                          text=True, stdout=subprocess.PIPE,
-                          env={**os.environ, "PYTHONPATH": str(BUILD / "python")}).stdout
-
-
 def described():
     """Commit of this tree, as cmake/git_describe.cmake finds it: `unknown` without git, and in a
     source archive, which may lie in another repository."""

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from . import ROOT, lab, native
+from . import ROOT, native
 
 clpv = native()
 
@@ -83,12 +83,10 @@ def of_lobes(bases):
     return rows
 
 
-def lobes(arguments):
-    """Errors of the named bases, of other guesses, and of the best sets that a search finds."""
+def lobes(_):
+    """Errors of the named bases, and of other guesses."""
     guesses = {name: clpv.Basis(name, centres=centres) for name, centres in GUESSES.items()}
-    rows = of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})
-    searched = None if arguments.quick else lab("clpv_lab.searches")
-    return {"sets": rows, "searched": json.loads(searched) if searched else []}
+    return {"sets": of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})}
 
 
 def along_z(name, value):

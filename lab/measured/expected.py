@@ -16,16 +16,14 @@ import pathlib
 PARTS = json.loads(pathlib.Path(__file__).with_name("parts.json").read_text(encoding="utf-8"))
 CLAIMS = [name for name, part in PARTS.items() if part["file"] == "claims"]
 # Fields that name a row, and fields that are no results.
-IDENTITY = ("basis", "lobe", "transport", "n", "over", "lambdas", "lambda", "entries",
-            "cascade_size", "rsm_size", "iterations", "cascade-size", "image", "options", "camera",
+IDENTITY = ("basis", "lobe", "transport", "n", "lambda", "entries", "cascade_size", "rsm_size", "iterations", "cascade-size", "image", "options", "camera",
             "size")
 SKIPPED = ("floor_pixels", "views", "apart")
 
 
 def label(row):
-    """Name of a row: what identifies it. A search names its lambda as a result."""
-    return ",".join(str(row[key]) for key in IDENTITY
-                    if key in row and not (key == "lambda" and "over" in row))
+    """Name of a row: what identifies it."""
+    return ",".join(str(row[key]) for key in IDENTITY if key in row)
 
 
 def numbers(value, path):

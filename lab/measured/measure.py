@@ -28,13 +28,11 @@ import subprocess
 import sys
 import tempfile
 
-from . import (CLPV, LAB, RESULTS, ROOT, bake, charts, described, json_lines, lab, leaks, native,
-               output, rooms, rows)
+from . import CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
 IMAGES = ROOT / "docs/images"
-TEXELS, CASCADES = 16, (12.5, 25, 50)  # of the normals for which centres are searched; [m]
 
 
 def run(*arguments, program=CLPV, right=False):
@@ -85,30 +83,8 @@ def measured_with(device):
             "device": device["name"], "driver": f"{device['platform']} {device['driver']}"}
 
 
-def search_centres(model):
-    """Eight centres for all directions, and for the normals of what the sun of Sponza's first view
-    lights in three cascades, weighted by the light that they reflect."""
-    from .claims import from_the_sun  # needs the native module
-    clpv = native()
-    scene, lit = clpv.Scene(ROOT / "scenes/sponza_suns.json", model), []
-    camera = scene.cameras[0]
-    sun = next(light for light in scene.lights if light.name == camera.light)
-    with clpv.Renderer(scene, width=TEXELS, height=TEXELS) as renderer:
-        for size in CASCADES:
-            flux = renderer.render("albedo", from_the_sun(camera, sun.direction, size)).array
-            weights = flux[..., :3].sum(axis=-1).ravel().tolist()
-            normals = renderer.show("normal").array[..., :3].reshape(-1, 3).tolist()
-            lit += [[*n, weight] for n, weight in zip(normals, weights) if weight > 0]
-    (ROOT / "out").mkdir(exist_ok=True)
-    output.write(ROOT / "out/normals.json", json.dumps({"weights": lit}))
-    lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
-    lab("clpv_lab.search", "8", "-o", rows.SEARCHED_NORMALS, "--weights=out/normals.json")
-
-
 def measure_quality(name, model):
     arguments, runs = rows.QUALITY_FILES[name]
-    if name in rows.OF_LAB:
-        search_centres(model)
     cells, variants = [], []
     given = scenes_of(arguments, model)
     if not any(argument.startswith("--preset") for argument in given):
@@ -188,10 +164,6 @@ def measure_docs(model, parts):
                "--output=FOLDER/frame.png", "--stats")
     measured = measured_with(tiny["device"])
     for name in parts:
-        if name in rows.OF_LAB and not LAB.exists():
-            print(f"scripts/measure: skipped: {name}: the lab is not built (-DCLPV_LAB=ON)",
-                  file=sys.stderr)
-            continue
         write(RESULTS / "docs", name, {"measured": measured, **PARTS[name](model)})
         for draw in DRAWN.get(name, []):
             draw()

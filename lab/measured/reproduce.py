@@ -6,9 +6,8 @@
 Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
 DIR (out/paper), a new or empty folder or one of an earlier run. A second run with the same program,
 scripts, model and device continues: it measures the parts that it lacks.
-Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, searches
-for centres, large RSMs and srbf14's frames, computes lobes on the host, and times each row two or
-three times. --record puts the numbers into results/docs and the figures into docs/images;
+Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, large
+RSMs and srbf14's frames, computes lobes on the host, and times each row two or three times. --record puts the numbers into results/docs and the figures into docs/images;
 scripts/tables then writes the tables. REPRODUCING.md has the minutes of each part.
 
 Exit code 5: numbers left the tolerances of results/paper/expected.json; they are listed. Times are
@@ -63,8 +62,7 @@ def key_of(arguments):
     """Key of what the numbers of a part depend on: program and module, scripts and scenes, the
     model, replaced kernels, the devices, and the environment of clpv and its drivers."""
     module = sorted((BUILD / "python/clpv").glob("_native*.so"))
-    sources = [CLPV, *module, ROOT / "python/clpv", BUILD / "python/clpv_lab",
-               ROOT / "lab/measured", ROOT / "scenes"]
+    sources = [CLPV, *module, ROOT / "python/clpv", ROOT / "lab/measured", ROOT / "scenes"]
     kernels = os.environ.get("CLPV_KERNEL_DIR")
     environment = {name: value for name, value in sorted(os.environ.items())
                    if name.startswith(("CLPV_", "POCL_", "OCL_"))}

@@ -6,7 +6,7 @@ FRAMES         Sponza, camera `curtains`, 960x540: `clpv render --stats`
 QUALITY        errors against path tracing: `clpv quality`; QUALITY_PARTS: parts of the method,
                without the near field
 STEPS          the paper's lobes, exact in place of rotated through a table
-CENTRES        centres that the lab finds: over all directions, and for the normals that Sponza's
+CENTRES        centres of lab/results/centres: for all directions, and for the normals that Sponza's
                light sees; without the near field
 QUALITY_FILES  files of results/docs by `clpv quality`: scenes and options of all runs, and what
                each run sets
@@ -39,12 +39,11 @@ BOUNCES, SUNS, STEPS, CENTRES = map(table, ("BOUNCES", "SUNS", "STEPS", "CENTRES
 SETTINGS, GRIDS = map(table, ("SETTINGS", "GRIDS"))
 SEALED, OPEN_ROOMS, MEDIA, ROOMS = (DATA[name] for name in ("SEALED", "OPEN_ROOMS", "MEDIA", "ROOMS"))
 DEVICE_SUITES, DOCS_SUITES = DATA["DEVICE_SUITES"], DATA["DOCS_SUITES"]
-SEARCHED, SEARCHED_NORMALS = "out/searched8.json", "out/searched8-normals.json"
+SEARCHED, SEARCHED_NORMALS = "lab/results/centres/eight.json", "lab/results/centres/eight-normals.json"
 LEAKS = {"shapes": [*SEALED, *OPEN_ROOMS], "columns": [tuple(pair) for pair in DATA["LEAKS"]],
          "count": 8, "options": FAST}
 # Other methods of lab/docs/results.md, and stages whose time they do not get.
 METHODS, SHARED = DATA["METHODS"], DATA["SHARED"]
-OF_LAB = ("quality-centres", )  # needs a built lab
 
 
 def runs_of(name):

@@ -3,12 +3,13 @@
 clamped cosines, claims, brightness over steps, and times by `clpv bench` and `clpv render
 --stats`. tables.json has their columns."""
 import functools
+import json
 import math
 
 from clpv import ms_of
 
-from .. import rows as known, verdicts
-from ..cells import (TABLES, crossed, found, load, number, percent, ratio, result, rows, summed,
+from .. import ROOT, rows as known, verdicts
+from ..cells import (TABLES, crossed, found, load, number, ratio, result, rows, summed,
                      table, time)
 from .of_light import mean
 
@@ -41,7 +42,7 @@ def basis_tables():
 
 @rows
 def searches():
-    lines = load("claims")["lobes"]["searched"]
+    lines = json.loads((ROOT / "lab/results/centres/searched.json").read_text())["sets"]
     for n in dict.fromkeys(row["n"] for row in lines):
         yield {"n": n, "fixed": found(lines, n=n, over="all", lambdas="none"),
                "best": found(lines, n=n, over="all", lambdas="one"),
