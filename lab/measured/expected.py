@@ -7,6 +7,8 @@ Only the standard library.
 import json
 import pathlib
 
+from . import cells
+
 
 # Parts of scripts/reproduce. `file`: of results/docs. `tolerances`: by the end of a number's name:
 # absolute, relative; null: no number has an expected value. `model`: needs Sponza. `quick`: belongs
@@ -52,9 +54,9 @@ def compared(name, result):
     return {place(name): result} if PARTS[name]["tolerances"] else {}
 
 
-def recorded(read):
+def recorded():
     """{part: its result} of the record."""
-    files = {name: read("docs/" + part["file"]) for name, part in PARTS.items()}
+    files = {name: cells.read(part["file"]) for name, part in PARTS.items()}
     return {name: file.get(name) if name in CLAIMS else file for name, file in files.items()}
 
 
@@ -72,13 +74,13 @@ def tolerance(name, value):
     return float(f"{max(absolute, relative * abs(value)):.2g}")
 
 
-def expected(read):
+def expected():
     """expected.json: {number: [value, tolerance]}, and the file of each part."""
     return {
         "files": {place(name): "results/docs/" + part["file"] + ".json"
                   for name, part in PARTS.items() if part["tolerances"]},
         "numbers": {name: [float(f"{value:.6g}"), tolerance(name, value)]
-                    for name, value in found(recorded(read)).items() if value is not None},
+                    for name, value in found(recorded()).items() if value is not None},
     }
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from . import CLPV, ROOT, native
 from . import claims
-from .rows import EXACT_LOBES
+from .rows import options_of
 
 clpv = native()
 from clpv.draw import style  # noqa: E402
@@ -35,7 +35,8 @@ LOBES = ("rotate", "exact")
 SIZES = (12.5, 50)  # m, edge of the smallest cascade
 STEPS = (8, 24)
 # Three settings for srbf14. The first's errors are those of the table too.
-EXACT = {name.replace("-", "_"): value for name, value in EXACT_LOBES.items() if name != "preset"}
+EXACT = {name.replace("-", "_"): value for name, value in options_of("EXACT_LOBES").items()
+         if name != "preset"}
 SETTINGS = {
     "rotated lobes": {},
     "exact lobes": EXACT,

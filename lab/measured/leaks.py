@@ -20,7 +20,7 @@ import tempfile
 import numpy
 
 from . import ROOT, json_lines, native, output, rows as known
-from .cells import crossed, found
+from .cells import found
 
 sys.path.insert(0, str(ROOT / "scenes"))
 import generate_leaks as scenes  # noqa: E402  pylint: disable=wrong-import-position
@@ -97,13 +97,14 @@ def measure(shapes, columns, count, options):
 
 def lines(rows):
     """Cells of a table: a line for each shape."""
-    def cell(shape, column):
-        row = found(rows, shape=shape, light=column[0], bounces=column[1])
-        truth = f" ({row['truth']:.2g})" if row and "truth" in row else ""
-        return f"{row['leak']:.2g}{truth}" if row else "-"
+    def cell(shape, light, bounces):
+        row = found(rows, shape=shape, light=light, bounces=bounces)
+        return f"{row['leak']:.2g}" + (f" ({row['truth']:.2g})" if "truth" in row else "")
 
-    columns = {f"{row['light']}, {row['bounces']}": (row["light"], row["bounces"]) for row in rows}
-    return crossed("room", columns, {row["shape"]: row["shape"] for row in rows}, cell)
+    columns = dict.fromkeys((row["light"], row["bounces"]) for row in rows)
+    return [["room", *(f"{light}, {bounces}" for light, bounces in columns)],
+            *([shape, *(cell(shape, *column) for column in columns)]
+              for shape in dict.fromkeys(row["shape"] for row in rows))]
 
 
 def number_of(bounces):

@@ -114,7 +114,7 @@ def sponza_of(model):
 
 def measure_frames(model):
     rows_of = []
-    for varied in rows.FRAMES.values():
+    for varied in rows.table("FRAMES").values():
         stats = run("render", "scenes/sponza_suns.json", *sponza_of(model),
                     *(f"--{name}={value}" for name, value in varied.items()),
                     f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")

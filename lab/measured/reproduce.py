@@ -168,7 +168,7 @@ def page(arguments, done, left, checked, unmeasured):
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader([ROOT / "python/clpv/draw", ROOT / "lab/measured"]),
         autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    claims = verdicts.judged(tables.result)
+    claims = verdicts.judged()
     sections = [(name, [each for each in claims if each["section"] == name])
                 for name in dict.fromkeys(each["section"] for each in claims)]
     figures = done["figures"]["result"] if "figures" in done else {"sheets": [], "lobes": []}

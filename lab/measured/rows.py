@@ -15,15 +15,25 @@ SEALED         rooms of scripts/leaks: what their walls are, and how far apart t
 DOCS_SUITES    suites of `clpv bench` and their options; "sponza" is replaced by the scene, its
                model and the camera `curtains`
 """
+import functools
 import itertools
 import json
+import operator
 import pathlib
 
 DATA = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 
 
 def options_of(text):
-    return dict(word[2:].split("=", 1) for word in text.split())
+    """{option: value} of "--preset=best --grid=16", where FAST stands for the options of that name."""
+    options = {}
+    for word in text.split():
+        if word.startswith("--"):
+            name, value = word[2:].split("=", 1)
+            options[name] = value
+        else:
+            options |= options_of(DATA["options"][word])
+    return options
 
 
 def table(name):
@@ -31,33 +41,21 @@ def table(name):
     return {title: options_of(text) for title, text in DATA[name].items()}
 
 
-OPTIONS = table("options")
-BEST, PAPER, FAST = (OPTIONS[name] for name in ("BEST", "PAPER", "FAST"))
-EXACT_LOBES = OPTIONS["EXACT_LOBES"]
-FRAMES, QUALITY, QUALITY_PARTS = map(table, ("FRAMES", "QUALITY", "QUALITY_PARTS"))
-BOUNCES, SUNS, STEPS, CENTRES = map(table, ("BOUNCES", "SUNS", "STEPS", "CENTRES"))
-SETTINGS, GRIDS = map(table, ("SETTINGS", "GRIDS"))
-SEALED, OPEN_ROOMS, MEDIA, ROOMS = (DATA[name] for name in ("SEALED", "OPEN_ROOMS", "MEDIA", "ROOMS"))
+MEDIA, ROOMS, SHARED = (DATA[name] for name in ("MEDIA", "ROOMS", "SHARED"))
+OPEN_ROOMS = DATA["OPEN_ROOMS"]
 DEVICE_SUITES, DOCS_SUITES = DATA["DEVICE_SUITES"], DATA["DOCS_SUITES"]
-SEARCHED, SEARCHED_NORMALS = "lab/results/centres/eight.json", "lab/results/centres/eight-normals.json"
-LEAKS = {"shapes": [*SEALED, *OPEN_ROOMS], "columns": [tuple(pair) for pair in DATA["LEAKS"]],
-         "count": 8, "options": FAST}
-# Other methods of lab/docs/results.md, and stages whose time they do not get.
-METHODS, SHARED = DATA["METHODS"], DATA["SHARED"]
+LEAKS = {"shapes": [*DATA["SEALED"], *OPEN_ROOMS], "count": 8, "options": options_of("FAST"),
+         "columns": [(row["light"], row["bounces"]) for row in DATA["LEAKS"]]}
 
 
-def runs_of(name):
-    """Options of each run of a file: options, the rows of a table, or of two tables, "A x B"."""
-    for text in DATA["QUALITY_FILES"][name]["runs"]:
-        if text.startswith("--"):
-            yield options_of(text)
-        else:
-            tables = ([OPTIONS[part]] if part in OPTIONS else table(part).values()
-                      for part in text.split(" x "))
-            for parts in itertools.product(*tables):
-                yield {key: value for part in parts for key, value in part.items()}
+def runs_of(text):
+    """Options of each run: those of the text, the rows of a table, or of two tables, "A x B"."""
+    tables = [table(part).values() if part in DATA else [options_of(part)]
+              for part in text.split(" x ")]
+    for parts in itertools.product(*tables):
+        yield functools.reduce(operator.or_, parts)
 
 
-QUALITY_FILES = {name: (each["given"].split(), list(runs_of(name)))
+QUALITY_FILES = {name: (each["given"].split(), [run for text in each["runs"] for run in runs_of(text)])
                  for name, each in DATA["QUALITY_FILES"].items()}
 VIEWS = QUALITY_FILES["quality"][0][:-1]
