@@ -4,11 +4,10 @@ by `clpv bake --points`."""
 import csv
 import math
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-from . import CLPV, ROOT
+from . import ROOT, run_clpv
 
 sys.path.insert(0, str(ROOT / "scenes"))
 import generate_leaks as scenes  # noqa: E402
@@ -39,10 +38,8 @@ ROOM_POINTS = 5  # along each edge of a face
 
 def printed(scene, *options):
     """Words of the lines that `clpv bake SCENE` prints below the head."""
-    command = [str(CLPV), "bake", str(scene), *options]
     print("scripts/measure: clpv bake", scene, *options, file=sys.stderr)
-    text = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, cwd=ROOT).stdout
-    return [line.split() for line in text.splitlines()[1:]]
+    return [line.split() for line in run_clpv("bake", scene, *options).splitlines()[1:]]
 
 
 def values(words, names):

@@ -19,6 +19,7 @@ FORM}}. "then": a table whose lines follow; "like": a table that has what this o
 import functools
 import itertools
 import json
+import math
 import operator
 import string
 import sys
@@ -134,9 +135,17 @@ def mean_of(values):
     return sum(values) / len(values) if values and None not in values else None
 
 
-WORDS = {"__builtins__": {}, "abs": abs, "all": all, "len": len, "light_ms": light_ms, "max": max,
+def sum_of(lines, key):
+    """The sum of published numbers of three digits has three."""
+    values = [row[key] for row in lines]
+    if not values or None in values:
+        return None
+    return round(sum(values), 3) if len(values) > 1 else values[0]
+
+
+WORDS = {"__builtins__": {}, "abs": abs, "all": all, "hypot": math.hypot, "len": len, "light_ms": light_ms, "max": max,
          "mean_of": mean_of, "min": min, "ms_of": ms_of, "ratio": ratio, "sorted": sorted,
-         "sum": sum, "texts": texts, "zip": zip}
+         "sum": sum, "sum_of": sum_of, "texts": texts, "zip": zip}
 
 
 def evaluated(expression, row):

@@ -10,7 +10,7 @@ import sys
 import numpy
 from matplotlib import pyplot
 
-from . import CLPV, RESULTS, ROOT, bake, native, output
+from . import CLPV, RESULTS, ROOT, bake, native, output, sheet
 
 clpv = native()
 from clpv.draw import style  # noqa: E402
@@ -116,17 +116,17 @@ def draw_spheres(target):
                                          *([bake.PATHS] if source == "pathtrace" else [])))
         light[title] = probes.irradiance(baked, points, normals)
     light["path traced"] = truth["indirect"]
-    made = style.Sheet([f"Spheres in the atrium, lit by probes {SPACING} m apart"], len(light), len(light),
-                       tuple(length / 100 for length in SHOWN), above=True)
-    for i, (title, indirect) in enumerate(light.items()):
+    tiles = []
+    for title, indirect in light.items():
         array = picture.array.copy()
         array[shown, :3] = WHITE / math.pi * (truth["direct"] + indirect)
         array[shown, 3] = 1
         if title != "path traced":
             error = clpv.compare(indirect[None], truth["indirect"][None]).nrmse
             title += f": NRMSE {100 * error:.0f} %"
-        made.tile(i, title).imshow(clpv.Image(array, ("R", "G", "B", "A")).display(scene.exposure))
-    made.save(target, 100)
+        tiles.append((clpv.Image(array, ("R", "G", "B", "A")).display(scene.exposure), title))
+    sheet(target, f"Spheres in the atrium, lit by probes {SPACING} m apart", len(light),
+          [length / 100 for length in SHOWN], tiles)
 
 
 def draw_frame(folder):

@@ -5,7 +5,6 @@ part of scripts/reproduce.
 All but lobes and tables are of Sponza. `arguments`: model, out (output.Folder) and
 quick, of scripts/reproduce. """
 import itertools
-import json
 import math
 
 import numpy as np
@@ -48,7 +47,6 @@ NAMED = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "sr
 ALONG_Z, OBLIQUE = (0, 0, 1), (-2, 1, -3)
 OF_THE_PAPER = ("srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDAS = 0.1, 0.25, 0.4, 0.55, 0.6
-SIMILAR = 0.1  # share of the error of sh2
 TABLE_SIZES = 256, 257, 512, 1024, 0  # 0: H is computed
 
 
@@ -98,22 +96,17 @@ def along_z(name, value):
 
 
 def lambdas(arguments):
-    """Rules on lobes along +z by lambda, which the paper gives for one figure only: a set is worse
-    than sh2 if its error is larger, and very similar if the errors differ by a tenth of sh2's at
-    most. Light: --preset paper, 12.5 m, 8 steps."""
+    """Errors of lobes along +z by lambda, which the paper gives for one figure only. Light: --preset
+    paper, 12.5 m, 8 steps."""
     views_of = Views(arguments)
-    of_sh2 = clpv.Basis("sh2").lobe(ALONG_Z)["relative_l2"]
-    settings = {"preset": "paper", "cascade_size": 12.5, "iterations": 8, "lobe_time": "host"}
+    settings = {"preset": "paper", "cascade_size": 12.5, "iterations": 8}
     image_of_sh2 = views_of.image("curtains", basis="sh2", **settings)
     rows = []
     for value in LAMBDAS:
-        errors = {name: along_z(name, value) for name in OF_THE_PAPER}
         image = views_of.image("curtains", basis="srbf8v2", lambda_=value, **settings)
         rows.append({
-            "lambda": value, "sh2": of_sh2,
-            **errors, "worse": all(errors[name] > of_sh2
-                                   for name in ("srbf4", "srbf8v1", "srbf8v3")),
-            "similar": abs(errors["srbf8v2"] - of_sh2) <= SIMILAR * of_sh2,
+            "lambda": value, "sh2": clpv.Basis("sh2").lobe(ALONG_Z)["relative_l2"],
+            **{name: along_z(name, value) for name in OF_THE_PAPER},
             "difference": clpv.compare(image, image_of_sh2).nrmse,
             "error": views_of.error(image, "curtains")
         })
@@ -138,8 +131,8 @@ def tables(_):
 class Views:
     """The scene of claims about light, its images and its ground truth."""
 
-    def __init__(self, arguments):
-        self.scene = clpv.Scene(ROOT / "scenes/sponza_suns.json", arguments.model)
+    def __init__(self, arguments, scene="sponza_suns"):
+        self.scene = clpv.Scene(ROOT / f"scenes/{scene}.json", arguments.model)
         self.noise = NOISE_OF_QUICK if arguments.quick else NOISE
         self.out = arguments.out
 
@@ -154,10 +147,22 @@ class Views:
         return Views.traced[key]
 
     def renderer(self, **options):
-        return clpv.Renderer(self.scene, **{"width": WIDTH, "height": HEIGHT, **options})
+        """Lobes of --preset paper are constants: the light of run-time lobes within 2e-4, five times
+        as fast."""
+        constant = {"lobe_time": "host"} if options.get("preset") == "paper" else {}
+        return clpv.Renderer(self.scene, **{"width": WIDTH, "height": HEIGHT, **constant, **options})
 
     def image(self, camera, **options):
         return self.renderer(**options).render("indirect", camera)
+
+    def with_blockers(self, number, traced, more):
+        """Rows: the number of path tracing, and those of both bases by the published scheme, of the
+        defaults and of options, with blockers and without."""
+        yield {"image": "path traced", "on": traced, "off": None}
+        for variant in (*({"preset": "paper", "basis": name} for name in BASES),
+                        {"preset": "best"}, more):
+            on, off = (number(**variant, **blockers) for blockers in ({}, {"blockers": "none"}))
+            yield {"image": " ".join(variant.values()), "on": on, "off": off}
 
     def error(self, image, camera):
         return clpv.compare(image, self.truth(camera)).nrmse
@@ -166,11 +171,11 @@ class Views:
 def light(arguments):
     """Over steps, cascades and RSMs: how far apart the bases are, and how far off each is."""
     views_of = Views(arguments)
-    rows, constant = [], {"lobe_time": "host"} if arguments.quick else {}
+    rows = []
     for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS,
                                                  STEPS):
         images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size,
-                                 rsm_size=texels, iterations=steps, **constant) for name in BASES]
+                                 rsm_size=texels, iterations=steps) for name in BASES]
         rows.append({"cascade_size": size, "rsm_size": texels, "iterations": steps,
                      "difference": clpv.compare(images[1], images[0]).nrmse,
                      **{name: views_of.error(image, "curtains")
@@ -185,22 +190,15 @@ FOURTH = clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back")
 def views(arguments):
     """For each setting: both errors in every view, and mean, standard error and signs of their
     paired differences."""
-    views_of = Views(arguments)
-    cameras = [*views_of.scene.cameras[:3], FOURTH]
-    suns = json.loads((ROOT / "scenes/sponza_other_suns.json").read_text())["lights"]
-    views_of.scene.lights = [
-        clpv.Light(direction=sun["direction"], intensity=sun["illuminance_lux"], name=sun["name"])
-        for sun in suns
-    ]
-    views_of.scene.cameras = [camera.replace(name=f"{camera.name}-{sun['name']}", light=sun["name"])
-                              for camera, sun in itertools.product(cameras, suns)]
+    views_of = Views(arguments, "sponza_other_suns")
+    views_of.scene.cameras = [*views_of.scene.cameras, *(
+        FOURTH.replace(name=f"back-{sun.name}", light=sun.name) for sun in views_of.scene.lights)]
     rows, summary = [], []
     for size, steps in itertools.product(SIZES, STEPS):
         errors = {name: {} for name in BASES}
         for name in BASES:
-            # Lobes as constants give the light of run-time lobes within 2e-4, five times as fast.
-            renderer = views_of.renderer(preset="paper", lobe_time="host", basis=name,
-                                         cascade_size=size, iterations=steps)
+            renderer = views_of.renderer(preset="paper", basis=name, cascade_size=size,
+                                         iterations=steps)
             for camera in (each.name for each in views_of.scene.cameras):
                 found = clpv.compare(renderer.render("indirect", camera),
                                      views_of.truth(camera, noise=NOISE_OF_PAIRS))
@@ -231,22 +229,17 @@ def shadows(arguments):
         return image.array[..., :3].astype(float).sum(axis=-1)[floor] / albedo[floor]
 
     def contrast(light):
-        return (light[bright].mean() - light[dark].mean()) / (light[bright].mean() +
-                                                              light[dark].mean())
+        low, high = light[dark].mean(), light[bright].mean()
+        return (high - low) / (high + low)
 
-    irradiance, rows = on_floor(views_of.truth("columns", noise=NOISE)), []
-    dark, bright = irradiance <= np.quantile(irradiance, 0.25), irradiance >= np.quantile(
-        irradiance, 0.75)
-    rows.append({"image": "path traced", "on": contrast(irradiance), "off": None})
-    variants = [{"preset": "paper", "basis": name} for name in BASES] + [{"preset": "best"}]
-    variants.append({"preset": "paper", "basis": "sh2", "grid": "64",
-                     "iterations": "16"})  # light reaches as far
-    for variant in variants:
-        constant = {"lobe_time": "host"} if arguments.quick and variant["preset"] == "paper" else {}
-        on, off = (contrast(on_floor(views_of.image("columns", **variant, **constant, **blockers)))
-                   for blockers in ({}, {"blockers": "none"}))
-        rows.append({"image": " ".join(variant.values()), "on": on, "off": off})
-    return {"floor_pixels": int(floor.sum()), "rows": rows}
+    irradiance = on_floor(views_of.truth("columns", noise=NOISE))
+    dark, bright = (irradiance <= np.quantile(irradiance, 0.25),
+                    irradiance >= np.quantile(irradiance, 0.75))
+    rows = views_of.with_blockers(
+        lambda **options: contrast(on_floor(views_of.image("columns", **options))),
+        contrast(irradiance),
+        {"preset": "paper", "basis": "sh2", "grid": "64", "iterations": "16"})  # light reaches as far
+    return {"floor_pixels": int(floor.sum()), "rows": list(rows)}
 
 
 FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
@@ -260,34 +253,31 @@ def from_the_sun(camera, direction, size):
                           near=0.05, fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
 
 
+def neighbours(values):
+    """All pairs of texels beside and above each other."""
+    pairs = ((values[1:], values[:-1]), (values[:, 1:], values[:, :-1]))
+    return (np.concatenate([each.reshape(-1, *values.shape[2:]) for each in side])
+            for side in zip(*pairs))
+
+
 def texels(arguments):
     """For neighbouring texels: mean difference of their flux over its mean, and share of pairs with
     other normals."""
     views_of = Views(arguments)
     camera = views_of.scene.cameras[0]
-    sun = np.array(
-        next(light.direction for light in views_of.scene.lights
-             if camera.light in ("", light.name)))
+    sun = np.array(next(light.direction for light in views_of.scene.lights
+                        if camera.light in ("", light.name)))
     sun /= np.linalg.norm(sun)
     renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
     rows = []
     for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
-        above = from_the_sun(camera, sun, size)
-        albedo = renderer.render("albedo", above).array[..., :3].astype(float)
+        albedo = renderer.render("albedo", from_the_sun(camera, sun, size)).array[..., :3]
         normal = renderer.show("normal").array[..., :3].astype(float)
-        flux = albedo.sum(axis=-1) * np.clip(-(normal @ sun), 0, None)
-        met = (normal ** 2).sum(axis=-1) > 0.5
-        apart, cosines, fluxes = [], [], []
-        for here, there in ((np.s_[1:], np.s_[:-1]), (np.s_[:, 1:], np.s_[:, :-1])):
-            both = met[here] & met[there]
-            apart += [abs(flux[here] - flux[there])[both]]
-            fluxes += [flux[here][both]]
-            cosines += [(normal[here] * normal[there]).sum(axis=-1)[both]]
-        apart, cosines, fluxes = map(np.concatenate, (apart, cosines, fluxes))
-        rows.append({
-            "size": size, "flux": apart.mean() / fluxes.mean(),
-            "normals": (cosines < OTHER_WAY).mean()
-        })
+        flux = albedo.astype(float).sum(axis=-1) * np.clip(-(normal @ sun), 0, None)
+        met, beside = neighbours((normal ** 2).sum(axis=-1) > 0.5)
+        both, (a, b), (m, n) = met & beside, neighbours(flux), neighbours(normal)
+        rows.append({"size": size, "flux": abs(a - b)[both].mean() / a[both].mean(),
+                     "normals": ((m * n).sum(axis=-1)[both] < OTHER_WAY).mean()})
     return rows
 
 
@@ -320,19 +310,15 @@ def arcade(arguments):
                             round(ACROSS * height / half), samples=SAMPLES)
     traced.save(views_of.out.file("truths/arcade.exr"))
     line = traced.array[..., :3].astype(float).sum(axis=(0, 2))
-    rows = [{"image": "path traced", "on": (line * wave).mean() / line.mean(), "off": None}]
     points = [(at, y, AT_WALL + BEFORE_WALL) for at in x]
-    for variant in [{"preset": "paper", "basis": name}
-                    for name in BASES] + [{"preset": "best"}, {"grid": "64"}]:
-        constant = {"lobe_time": "host"} if variant.get("preset") == "paper" else {}
-        found = []
-        for blockers in ({}, {"blockers": "none"}):
-            renderer = views_of.renderer(**variant, **constant, **blockers)
-            renderer.render(camera=OF_ARCADE)
-            light = renderer.irradiance(points, [(0, 0, 1)] * ACROSS).astype(float).sum(axis=-1)
-            found.append((light * wave).mean() / light.mean())
-        rows.append({"image": " ".join(variant.values()), "on": found[0], "off": found[1]})
-    return rows
+
+    def number(**options):
+        renderer = views_of.renderer(**options)
+        renderer.render(camera=OF_ARCADE)
+        light = renderer.irradiance(points, [(0, 0, 1)] * ACROSS).astype(float).sum(axis=-1)
+        return (light * wave).mean() / light.mean()
+
+    return list(views_of.with_blockers(number, (line * wave).mean() / line.mean(), {"grid": "64"}))
 
 
 def lit(arguments):

@@ -14,19 +14,18 @@ These are clpv's renderings of the paper's captions, not the paper's images; doc
 describes them. """
 import functools
 import itertools
+import json
 import pathlib
-import subprocess
 import tempfile
 
 import numpy as np
 
-from . import CLPV, ROOT, native
-from . import claims
+from . import cells, claims, native, run_clpv, sheet
 from .rows import options_of
 
 clpv = native()
-from clpv.draw import style  # noqa: E402
 
+DATA = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 PRESETS = ("paper", "best")
 BASES = ("sh2", "srbf8v2")
@@ -34,15 +33,7 @@ NOISE = 0.1  # noise of the path-traced picture
 LOBES = ("rotate", "exact")
 SIZES = (12.5, 50)  # m, edge of the smallest cascade
 STEPS = (8, 24)
-# Three settings for srbf14. The first's errors are those of the table too.
-EXACT = {name.replace("-", "_"): value for name, value in options_of("EXACT_LOBES").items()
-         if name != "preset"}
-SETTINGS = {
-    "rotated lobes": {},
-    "exact lobes": EXACT,
-    "both exact": {**EXACT, "transport": "exact"},
-}
-AMPLIFY = 15  # factor of difference images, as in the paper
+AMPLIFY = 15  # factor of difference images, as in the paper and in captions of figures.json
 EXPOSURE = 4  # exposure of all images [EV]
 WIDTH, DPI = 12.7, 85  # sheets: inches, pixels per inch
 # A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are
@@ -51,131 +42,75 @@ DARKER = 0.02
 
 
 class Frames:
-    """Frames of one view, each rendered once, as display images and as arrays."""
+    """Frames of one view, each rendered once."""
 
-    def __init__(self, scene, arguments, camera):
-        self.scene, self.camera = scene, camera
+    def __init__(self, views, arguments, camera):
+        self.views, self.camera = views, camera
         self.size = {"width": arguments.width, "height": arguments.height}
-        self.view = f"Sponza, camera {camera}, exposure {EXPOSURE:+g} EV"
-        self.always = {}  # options of all frames of a preset with steps
+        self.title = f"Sponza, camera {camera}, exposure {EXPOSURE:+g} EV"
 
     @functools.cache
-    def rendered(self, **options):
-        always = self.always if options.get("preset") == "paper" else {}
-        renderer = clpv.Renderer(self.scene, **self.size, **{**always, **options})
+    def rendered(self, options):
+        renderer = self.views.renderer(**self.size, **{
+            name.replace("-", "_"): value for name, value in options_of(options).items()})
         return {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
 
-    def frame(self, view, **options):
-        """The frame as an Image."""
-        return self.rendered(**options)[view]
-
-    def image(self, view="full", **options):
+    def image(self, layer, options):
         """Pixels for a display, transparent without a surface."""
-        return self.frame(view, **options).display(EXPOSURE)
+        return self.rendered(options)[layer].display(EXPOSURE)
 
-    def indirect(self, **options):
+    def luminance(self, options):
         """Luminance of the indirect light."""
-        return self.frame("indirect", **options).array[..., :3] @ np.array(LUMINANCE)
+        return self.rendered(options)["indirect"].array[..., :3] @ np.array(LUMINANCE)
 
 
 def difference(a, b):
     return np.clip(AMPLIFY * np.abs(a.astype(int) - b)[..., :3], 0, 255).astype(np.uint8)
 
 
-def sheet(path, title, columns, tiles):
+def write_sheet(path, title, columns, tiles):
     """Tiles (pixels, caption), row by row, under a title."""
     height, width = tiles[0][0].shape[:2]
-    tile = (WIDTH / columns, WIDTH / columns * height / width)
-    made = style.Sheet([title], columns, len(tiles), tile, above=True)
-    for i, (pixels, caption) in enumerate(tiles):
-        made.tile(i, caption).imshow(pixels, interpolation="lanczos", aspect="auto")
-    made.save(path, DPI)
+    size = WIDTH / columns, WIDTH / columns * height / width
+    sheet(path, title, columns, size, tiles, DPI, interpolation="lanczos", aspect="auto")
 
 
-def pair(frames, view="full", **options):
-    """Returns captioned tiles of both bases and of their difference."""
-    images = [frames.image(view, basis=basis, **options) for basis in BASES]
-    return [*zip(images, BASES), (difference(*images), f"difference x{AMPLIFY}")]
-
-
-def with_caption(tiles, text):
-    return [(pixels, f"{caption}, {text}") for pixels, caption in tiles]
-
-
-def figure1(frames, out):
-    tiles = [
-        tile for preset in PRESETS
-        for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")
-    ]
-    sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3,
-          tiles)
+def tiles_of(frames, spec):
+    """Tiles of a sheet of figures.json: a caption and options, or those of two images, whose
+    difference it shows."""
+    for row in cells.rows_of(spec["rows"]):
+        for caption, *each in [*spec.get("tiles", DATA["tiles"]), *spec.get("more", [])]:
+            images = [frames.image(row.get("layer", "full"),
+                                   f"{cells.shown(spec['options'], row)} {options}")
+                      for options in each]
+            yield (difference(*images) if len(images) > 1 else images[0],
+                   caption.format(caption=cells.shown(spec["caption"], row)))
 
 
 def answer(frames, out):
-    tiles, truth = [], clpv.pathtrace(frames.scene, "indirect", frames.camera, **frames.size,
+    tiles, truth = [], clpv.pathtrace(frames.views.scene, "indirect", frames.camera, **frames.size,
                                       noise=NOISE)
     for preset, basis in itertools.product(PRESETS, BASES):
-        image = frames.frame("indirect", basis=basis, preset=preset, bounces=1)
+        image = frames.rendered(f"--basis={basis} --preset={preset} --bounces=1")["indirect"]
         error = f"NRMSE {100 * clpv.compare(image, truth).nrmse:.0f} %"
         tiles.append((image.display(EXPOSURE + 1), f"{basis}, --preset {preset}: {error}"))
     tiles.insert(len(BASES), (truth.display(EXPOSURE + 1), "path traced"))
-    sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3,
-          tiles)
-
-
-def figure4(frames, out, preset):
-    tiles = []
-    for size, steps in itertools.product(SIZES, STEPS if preset == "paper" else
-                                         ("no", )):  # a sweep takes none
-        given = {} if steps == "no" else {"iterations": steps}
-        tiles += with_caption(pair(frames, preset=preset, cascade_size=size, **given),
-                              f"{size:g} m, {steps} iterations")
-    sheet(
-        out.file(f"figure4-{preset}.jpg"),
-        f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps "
-        f"({frames.view})", 3, tiles)
-
-
-def figure5(frames, out, preset):
-    tiles = []
-    for view, light in (("full", "direct light on"), ("indirect", "direct light off")):
-        open_air = frames.image(view, basis="srbf8v2", preset=preset, blockers="none")
-        tiles += with_caption(pair(frames, view, preset=preset), light)
-        tiles.append((open_air, f"srbf8v2, {light}, no indirect shadows"))
-    sheet(out.file(f"figure5-{preset}.jpg"),
-          f"Figure 5 by --preset {preset}: indirect shadows ({frames.view})", 4, tiles)
-
-
-def srbf14(frames, out):
-    tiles = []
-    for (setting, options), steps in itertools.product(SETTINGS.items(), STEPS):
-        for size, view in itertools.product(SIZES, ("full", "indirect")):
-            pixels = frames.image(view, preset="paper", basis="srbf14", **options,
-                                  cascade_size=size, iterations=steps)
-            tiles.append((pixels, f"{setting}, {steps} steps, {size:g} m, {view}"))
-    sheet(out.file("srbf14.jpg"),
-          f"srbf14 by --preset paper, with other lobes and transport ({frames.view})", 4, tiles)
-
-
-def variants():
-    """Yields the variants whose brightness is compared at both numbers of steps."""
-    for basis in BASES:
-        yield {"preset": "paper", "basis": basis}
-    for setting in SETTINGS.values():
-        yield {"preset": "paper", "basis": "srbf14", **setting}
+    write_sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3,
+                tiles)
 
 
 def brightness(frames):
     """Rows: mean luminance of the indirect light at both numbers of steps, and the share of pixels
     that the later steps darken."""
     rows = []
-    for variant, size in itertools.product(variants(), SIZES):
-        few, many = (frames.indirect(**variant, cascade_size=size, iterations=steps)
+    for variant, size in itertools.product(DATA["brightness"], SIZES):
+        few, many = (frames.luminance(f"{variant} --cascade-size={size} --iterations={steps}")
                      for steps in STEPS)
-        darker = float((many < few - DARKER * few.mean()).mean())
+        options = {name.replace("-", "_"): value for name, value in options_of(variant).items()}
         rows.append({
-            **variant, "cascade_size": size, "mean_8": float(few.mean()),
-            "mean_24": float(many.mean()), "darker": darker
+            **options, "cascade_size": size, "mean_8": float(few.mean()),
+            "mean_24": float(many.mean()),
+            "darker": float((many < few - DARKER * few.mean()).mean())
         })
     return rows
 
@@ -185,8 +120,7 @@ def basis_figures(out):
     names = []
     for lobe in LOBES:
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", folder], check=True,
-                           stdout=subprocess.DEVNULL)
+            run_clpv("basis", "--lobe", lobe, "--figures", folder)
             for file in sorted(pathlib.Path(folder).glob("*.png")):
                 names.append(f"lobes-{lobe}/{file.name}")
                 out.write(names[-1], file.read_bytes())
@@ -200,21 +134,17 @@ def paper(arguments):
     lobe_files = basis_figures(out)
     if not arguments.model:
         return {"sheets": [], "lobes": lobe_files, "rows": []}
-    scene = clpv.Scene(ROOT / "scenes/sponza_suns.json", arguments.model)
-    frames, along = (Frames(scene, arguments, camera) for camera in ("curtains", "atrium"))
-    nave = clpv.Scene(ROOT / "scenes/sponza_suns.json", arguments.model)
-    nave.lights, nave.cameras = [claims.ALONG_THE_NAVE], [claims.OF_ARCADE]
-    shadowed = Frames(nave, arguments, "arcade")
-    if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast
-        frames.always = shadowed.always = {"lobe_time": "host"}
-    figure1(frames, out)
-    answer(frames, out)
-    for preset in PRESETS:
-        figure4(frames, out, preset)
-    for preset in PRESETS:
-        figure5(shadowed, out, preset)
-    if not arguments.quick:
-        srbf14(along, out)
+    nave = claims.Views(arguments)
+    nave.scene.lights, nave.scene.cameras = [claims.ALONG_THE_NAVE], [claims.OF_ARCADE]
+    frames = {camera: Frames(views, arguments, camera) for camera, views in (
+        ("curtains", claims.Views(arguments)), ("atrium", claims.Views(arguments)),
+        ("arcade", nave))}
+    for name, spec in DATA["sheets"].items():
+        if not (arguments.quick and spec.get("whole")):
+            view = frames[spec["view"]]
+            write_sheet(out.file(name), f"{spec['title']} ({view.title})", spec["columns"],
+                        list(tiles_of(view, spec)))
+    answer(frames["curtains"], out)
     sheets = [name for name in out.written if "/" not in name]
     return {"sheets": sheets, "lobes": lobe_files,
-            "rows": [] if arguments.quick else brightness(along)}
+            "rows": [] if arguments.quick else brightness(frames["atrium"])}

@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-from . import CLPV, ROOT, described, json_lines, output
+from . import CLPV, ROOT, cells, described, json_lines, output, tables
 
 FRAMES = {
     "defaults": ["--width", "960", "--height", "540"],
@@ -61,7 +61,7 @@ def frame(clock, program, scene, options, folder):
         stats, image = folder / "stats.json", folder / "image.exr"
         _, why = clock.run([program, *scene, *options, "-o", image, "--stats", stats])
         if why:
-            return {"failed": why}
+            return {**dict.fromkeys(COUNTS), "times": [], "hash": "", "failed": why}
         hashes.add(hashlib.sha256(image.read_bytes()).hexdigest())
         found = json.loads(stats.read_text())
         if row and found["times"][0]["median"] > row["times"][0]["median"]:
@@ -94,19 +94,12 @@ def check(clock, program, device, options, stages):
     return {"results": found, "bad": bad}
 
 
-def table(report):
-    """Markdown: a row a frame, before and after."""
-    lines = ["| frame | program | frame [ms] | host [ms] | launches | fills | waits | arguments |",
-             "|---|---|---|---|---|---|---|---|"]
-    for row in report["frames"]:
-        name = f"| {row['frame']} | {row['program']} |"
-        if "failed" in row:
-            lines.append(f"{name} {row['failed']} |")
-            continue
-        times = {time["stage"]: time["median"] for time in row["times"]}
-        counts = " | ".join("" if row[key] is None else f"{row[key]:.0f}" for key in COUNTS)
-        lines.append(f"{name} {times['frame']:.2f} | {times['host']:.2f} | {counts} |")
-    return "\n".join(lines)
+# Markdown: a row a frame, before and after; "-" for what failed.
+TABLE = {
+    "columns": {"frame": "{frame}", "program": "{program}", "frame [ms]": "{ms:.2f}",
+                "host [ms]": "{host:.2f}", **{name: f"{{{name}:.0f}}" for name in COUNTS}}
+}
+MS = {"ms": "ms_of(times, 'frame') or None", "host": "ms_of(times, 'host') or None"}
 
 
 def measure(options, folder):
@@ -162,7 +155,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         report = measure(options, pathlib.Path(folder))
     output.write(options.output, json_lines(report))
-    print(table(report))
+    print(tables.drawn(cells.table({**TABLE, "rows": {"each": report["frames"], "let": MS}})))
     bad = [row for row in report["frames"] if "failed" in row or "differ" in row["hash"]]
     bad += report["check"].get("bad", []) + report["check first"].get("bad", [])
     for row in bad:

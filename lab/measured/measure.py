@@ -28,7 +28,7 @@ import subprocess
 import sys
 import tempfile
 
-from . import CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows
+from . import CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows, run_clpv
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
@@ -61,12 +61,7 @@ def write(folder, name, document):
 
 
 def measure_device(folder):
-    checks = subprocess.run([str(CLPV), "check", "--format=json"], stdout=subprocess.PIPE,
-                            text=True, check=False, cwd=ROOT)
-    if checks.returncode != 0:
-        print(f"scripts/measure: clpv check did not pass: exit code {checks.returncode}",
-              file=sys.stderr)
-    write(folder, "check", json.loads(checks.stdout))
+    write(folder, "check", json.loads(run_clpv("check", "--format=json", check=False)))
     for suite, options in rows.DEVICE_SUITES.items():
         write(folder, suite, run("bench", suite, *options.split(), "--output"))
 

@@ -23,7 +23,7 @@ import sys
 import time
 
 from . import (BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, model_files, output,
-               tables, verdicts)
+               run_clpv, tables, verdicts)
 from .expected import CLAIMS, PARTS
 from .measure import measured_with, run, write
 
@@ -53,11 +53,6 @@ def parts_of(arguments):
             if (arguments.model or not part["model"]) and (part["quick"] or not arguments.quick)]
 
 
-def devices():
-    return subprocess.run([str(CLPV), "devices", "--format=json"], stdout=subprocess.PIPE,
-                          text=True, check=True).stdout
-
-
 def key_of(arguments):
     """Key of what the numbers of a part depend on: program and module, scripts and scenes, the
     model, replaced kernels, the devices, and the environment of clpv and its drivers."""
@@ -70,7 +65,7 @@ def key_of(arguments):
         "sources": hash_of(sources),
         "model": hash_of(model_files(pathlib.Path(arguments.model))) if arguments.model else None,
         "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
-        "devices": devices(),
+        "devices": run_clpv("devices", "--format=json"),
         "environment": environment,
         "quick": arguments.quick,
     }
@@ -136,7 +131,7 @@ def overlay(done):
 
 def record(done, out):
     """Writes results/docs from the parts of this run, and docs/images from its figures."""
-    now = measured_with(json.loads(devices())["devices"][0])
+    now = measured_with(json.loads(run_clpv("devices", "--format=json"))["devices"][0])
     folder = RESULTS / "docs"
     if claims := results_of(done, CLAIMS):
         recorded = tables.read("claims")
@@ -175,8 +170,7 @@ def page(arguments, done, left, checked, unmeasured):
     out = arguments.out.path
     sheets, lobes = ([{"name": name, "uri": uri(out / name)} for name in figures[kind]]
                      for kind in ("sheets", "lobes"))
-    device = subprocess.run([str(CLPV), "devices"], stdout=subprocess.PIPE, text=True, check=False,
-                            cwd=ROOT).stdout.splitlines()[:1]
+    device = run_clpv("devices").splitlines()[:1]
     minutes = [["part", "minutes"],
                *([name, f"{part['minutes']:.1f}"] for name, part in done.items())]
     here = "this run" if "table1" in done else "the record"

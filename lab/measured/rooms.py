@@ -7,11 +7,10 @@ import math
 
 import numpy as np
 
-from . import native
+from . import native, sheet
 from .rows import ROOMS
 
 clpv = native()
-from clpv.draw import style  # noqa: E402
 
 SIZE, PATHS = (120, 68), 256  # of a row of the table; paths a pixel
 SHOWN = 240, 135  # pixels of a tile of the picture
@@ -93,16 +92,14 @@ def draw(path):
     rooms = [(room, degrees) for room in ROOMS if "shown" in room
              for degrees in (0, room["degrees"])]
     title = "All bounces, by clpv above and by path tracing below (means of 3 x 3 pixels)"
-    made = style.Sheet([title], len(rooms), 2 * len(rooms),
-                       tuple(length / 100 for length in SHOWN), above=True)
-    for i, (room, degrees) in enumerate(rooms):
+    tiles, traced = [], []
+    for room, degrees in rooms:
         scene = scene_of(room, degrees)
         truth = clpv.pathtrace(scene, "full", None, *SHOWN, samples=room["paths"])
         with clpv.Renderer(scene, **CASCADES) as renderer:
             image = renderer.render("full", size=SHOWN)
         energy = clpv.compare(image, truth).energy_ratio
         exposure, caption = truth.automatic_exposure(), f"{room['shown']}, {degrees} degrees"
-        for k, (shown, text) in enumerate(
-            ((image, f"{caption}: energy {energy:.2f}"), (smooth(truth), "path traced"))):
-            made.tile(i + k * len(rooms), text).imshow(shown.display(exposure))
-    made.save(path, 100)
+        tiles.append((image.display(exposure), f"{caption}: energy {energy:.2f}"))
+        traced.append((smooth(truth).display(exposure), "path traced"))
+    sheet(path, title, len(rooms), [length / 100 for length in SHOWN], tiles + traced)

@@ -21,9 +21,9 @@ import tempfile
 
 import numpy
 
-from . import LAB, ROOT, charts
+from . import LAB, ROOT, charts, sheet
 from .cells import found
-from .charts import clpv, style
+from .charts import clpv
 from .measure import FRAME_COUNT, measured_with, run, scenes_of, write
 from .rows import DATA, SHARED, VIEWS
 
@@ -66,6 +66,10 @@ def method_of(cell, options):
             }[near] if near else cell["options"].get("baseline")
 
 
+def quality(scenes, model, *options):
+    return run("quality", *scenes_of(scenes, model), *options, "--output", program=LAB)
+
+
 def measure_standing(folder, model):
     """Three groups of cells: 240x135 and 960x540, each with its frame's time, and 240x135 with the
     time of 960x540."""
@@ -87,8 +91,8 @@ def measure_standing(folder, model):
         document[name] = []
         for arguments in scenes:
             for options in runs:
-                report = run("quality", *scenes_of(arguments, model), *SIZES[size], *options,
-                             "--fresh", f"--frames={STANDING_COUNT}", "--output", program=LAB)
+                report = quality(arguments, model, *SIZES[size], *options, "--fresh",
+                                 f"--frames={STANDING_COUNT}")
                 for cell in report["cells"]:
                     cell["method"] = method_of(cell, options)
                     cell["scene"] = cell["scene"].removesuffix("_suns")
@@ -111,8 +115,7 @@ def measure_standing(folder, model):
 
 def renew_own(model):
     """Errors of the frames that are clpv's own, beside times and other methods as they are."""
-    report = [(options, run("quality", *scenes_of(arguments, model), *SIZES["small"], *options,
-                            "--frames=1", "--output", program=LAB))
+    report = [(options, quality(arguments, model, *SIZES["small"], *options, "--frames=1"))
               for arguments in STANDING for options in STANDING_FRAMES]
     measured = measured_with(report[0][1]["device"])
     for path in FOLDER.glob("*.json"):
@@ -131,17 +134,11 @@ def renew_own(model):
 def measure_front(model):
     """Variants of clpv by grid, and of other methods by time, with the series that each belongs
     to."""
-    given = [*scenes_of(FRONT, model), "--fresh", "--frames=3"]
-    variants = []
-    for series, options in FRONT_GRIDS.items():
-        variants += [
-            {**row, "series": series}
-            for row in run("quality", *given, "--preset=best", *options, "--output",
-                           program=LAB)["variants"]
-        ]
+    given = FRONT, model, "--fresh", "--frames=3"
+    variants = [{**row, "series": series} for series, options in FRONT_GRIDS.items()
+                for row in quality(*given, "--preset=best", *options)["variants"]]
     for time in FRONT_TIMES:
-        report = run("quality", *given, *OF_A_TIME, f"--baseline-time={time}", "--output",
-                     program=LAB)
+        report = quality(*given, *OF_A_TIME, f"--baseline-time={time}")
         variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"]
                      if "baseline" in row["options"]]
     return variants
@@ -158,34 +155,35 @@ def draw_methods(model):
     """Light of clpv, of other methods with its time, and path tracing; below, the differences from
     path tracing over its root mean square."""
     with tempfile.TemporaryDirectory() as folder:
-        report = run("quality", *scenes_of(["sponza_suns"], model), "--preset=best", "--noise=0.06",
-                     *(f"--camera={view}" for view in SHOWN_VIEWS), f"--baseline={','.join(SHOWN)}",
-                     f"--frames={STANDING_COUNT}", "--fresh", f"--images={folder}", "--output",
-                     program=LAB)
+        report = quality(["sponza_suns"], model, "--preset=best", "--noise=0.06",
+                         *(f"--camera={view}" for view in SHOWN_VIEWS), "--fresh",
+                         f"--baseline={','.join(SHOWN)}", f"--frames={STANDING_COUNT}",
+                         f"--images={folder}")
         images = {(name, view): clpv.read_image(f"{folder}/{name}/sponza_suns-{view}.exr")
                   for name in SHOWN for view in SHOWN_VIEWS}
     truths = {truth["camera"]: indirect_of(truth["file"]) for truth in report["ground_truths"]}
     exposure = truths[SHOWN_VIEWS[0]].automatic_exposure()
     scene = clpv.Scene(ROOT / "scenes/sponza_suns.json", model)
     height, width = next(iter(images.values())).array.shape[:2]
-    made = style.Sheet(["Indirect light of one bounce in equal time, and 0 to 100 % error below"],
-                       len(SHOWN) + 2, 4 * (len(SHOWN) + 2), (width / 100, height / 100), above=True)
-    for row, view in enumerate(SHOWN_VIEWS):
+    tiles = []
+    for view in SHOWN_VIEWS:
         truth = truths[view]
         with clpv.Renderer(scene, width=width, height=height, bounces=1) as renderer:
             line = {"clpv": renderer.render("indirect", view),
                     **{title: images[name, view] for name, title in SHOWN.items()},
                     "path traced": truth}
         level = float(numpy.sqrt((truth.array[..., :3]**2).mean()))
-        for column, (title, image) in enumerate(line.items()):
-            place = 2 * row * len(line) + column
+        errors = []
+        for title, image in line.items():
             error = 100 * clpv.compare(image, truth).nrmse_valid
             caption = f"{title}: NRMSE {error:.0f} %" if image is not truth else f"{view}: {title}"
-            made.tile(place, caption).imshow(image.display(exposure))
-            if image is not truth:
-                away = abs(image.array - truth.array)[..., :3].mean(axis=2) / level
-                made.tile(place + len(line), "").imshow(away, cmap="inferno", vmin=0, vmax=1)
-    made.save(ROOT / "docs/images/equal-time.jpg", 100)
+            tiles.append((image.display(exposure), caption))
+            away = abs(image.array - truth.array)[..., :3].mean(axis=2) / level
+            errors.append((away if image is not truth else None, ""))
+        tiles += errors
+    sheet(ROOT / "docs/images/equal-time.jpg",
+          "Indirect light of one bounce in equal time, and 0 to 100 % error below", len(SHOWN) + 2,
+          (width / 100, height / 100), tiles, cmap="inferno", vmin=0, vmax=1)
 
 
 def main():

@@ -8,23 +8,21 @@ from results/docs and lab/results.
     scripts/tables --list     names of all tables
 
 scripts/measure writes results/docs. tables.json has the tables (cells.py says how they are written),
-but for Table 1, verdicts and light probes at equal bytes, which are functions here. Only the
+but for verdicts and light probes at equal bytes, which are functions here. Only the
 standard library.
 """
 import functools
 import json
-import math
 import pathlib
 import re
 import sys
 
 from . import ROOT, RESULTS, bake as probes, expected, json_lines, output, verdicts
-from .cells import LOADED, MEASURED, found, load, number, read, rows, table
+from .cells import LOADED, MEASURED, load, read, rows, table
 
 __all__ = ["MEASURED", "TABLES", "main", "read"]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 STANDING = ROOT / "lab/results/quality"
-TABLE1_BASES = "sh2", "srbf4", "srbf8v2"
 SHOWN = 6  # points of a claim whose numbers its line shows
 RESOLVED = 0.5  # [points of %] smaller differences of light probes are none
 # (a, b): does a have a smaller error than b at equal bytes?
@@ -99,45 +97,6 @@ def verdict_lines(section):
     return lines
 
 
-def table1(shadows):
-    """The paper's Table 1: of each basis the published time and the one measured here."""
-    lines = [["[ms]", *(f"{basis}, {column}" for basis in TABLE1_BASES
-                        for column in ("paper", "here")), "srbf8v2 / sh2, paper", "here"]]
-
-    def add(title, published, here, spreads):
-        times = [cell for a, b, s in zip(published, here, spreads)
-                 for cell in ("-" if a is None else f"{a:g}",
-                              "-" if b is None else f"{number(b)} +- {number(s)}")]
-        ratios = [f"{number(column[-1] / column[0])}x" if column[-1] and column[0] else "-"
-                  for column in (published, here)]
-        lines.append([title, *times, *ratios])
-
-    def at(stage, cascade, layout):
-        cells = [found(load("table1")["benchmarks"], stage=stage, cascade=cascade, layout=layout,
-                       basis=basis, occlusion=shadows) for basis in TABLE1_BASES]
-        return [[row and row[key] for row in cells] for key in ("published_ms", "median", "mad")]
-
-    stages = [("inject-light", "injection"), ("propagate", "propagation"),
-              ("gather", "light buffer")]
-    if shadows:
-        stages.insert(1, ("inject-geometry", "geometry volume"))
-    for layout, prefix, total in (("image", "", "sum, without geometry volume"), (
-            "soa", "in buffers and constants: ", "in buffers and constants: the same sum")):
-        terms = []
-        for stage, name in stages:
-            for cascade, size in (enumerate((", small", ", medium", ", big")) if stage != "gather"
-                                  else [(None, "")]):
-                cells = at(stage, cascade, layout)
-                if layout == "image" or not shadows and stage == "propagate":
-                    add(prefix + name + size, *cells)
-                if stage != "inject-geometry":
-                    terms.append(cells)
-        published, here, spreads = zip(*terms)
-        add(total, *([None if None in column else round(sum(column), 3) for column in zip(*times)]
-                     for times in (published, here)), [math.hypot(*column) for column in zip(*spreads)])
-    return lines
-
-
 def difference(lines, a, b, source, place):
     """Error of a minus that of b [%] at the middle of the bytes that both have."""
     both = [probes.over_bytes(lines, name, source, place) for name in (a, b)]
@@ -165,8 +124,6 @@ TABLES = {
        for name, spec in SPECS.items()},
     **{f"verdicts-{section}": functools.partial(verdict_lines, section)
        for section in dict.fromkeys(claim["section"] for claim in verdicts.CLAIMS)},
-    "table1-shadows": functools.partial(table1, True),
-    "table1-no-shadows": functools.partial(table1, False),
     "bake-verdicts": bake_verdicts,
 }
 
