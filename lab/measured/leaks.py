@@ -19,7 +19,7 @@ import tempfile
 
 import numpy
 
-from . import ROOT, json_lines, native, output, rows as known
+from . import ROOT, json_lines, native, output, rows as known, tables
 from .cells import found
 
 sys.path.insert(0, str(ROOT / "scenes"))
@@ -99,7 +99,8 @@ def lines(rows):
     """Cells of a table: a line for each shape."""
     def cell(shape, light, bounces):
         row = found(rows, shape=shape, light=light, bounces=bounces)
-        return f"{row['leak']:.2g}" + (f" ({row['truth']:.2g})" if "truth" in row else "")
+        truth = f" ({row['truth']:.2g})" if row and "truth" in row else ""
+        return f"{row['leak']:.2g}{truth}" if row else "-"
 
     columns = dict.fromkeys((row["light"], row["bounces"]) for row in rows)
     return [["room", *(f"{light}, {bounces}" for light, bounces in columns)],
@@ -137,6 +138,4 @@ def main():
     rows = measure(shapes, columns, arguments.offsets, options)
     if arguments.output:
         output.write(arguments.output, json_lines({"leaks": rows}))
-    head, *body = lines(rows)
-    for line in (head, ["---"] * len(head), *body):
-        print("|", " | ".join(line), "|")
+    print(tables.drawn(lines(rows)), end="")

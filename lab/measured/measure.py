@@ -36,8 +36,9 @@ IMAGES = ROOT / "docs/images"
 
 
 def run(*arguments, program=CLPV, right=False):
-    """Returns the JSON of `clpv ARGUMENTS FILE.json`, with FOLDER a temporary folder. Where that
-    fails and leaves a file, as `clpv bench` does, goes on, but if it has to be `right`."""
+    """Returns the JSON of `clpv ARGUMENTS FILE.json`, without samples and host name, with FOLDER a
+    temporary folder. Where that fails and leaves a file, as `clpv bench` does, goes on, but if it has
+    to be `right`."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
         command = [str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
@@ -48,14 +49,15 @@ def run(*arguments, program=CLPV, right=False):
             print(f"{sys.argv[0]}: exit code {code}", file=sys.stderr)
         if code != 0 and right or not file.exists():
             sys.exit(code)
-        return json.loads(file.read_text(encoding="utf-8"))
+        document = json.loads(file.read_text(encoding="utf-8"))
+    document.get("context", {}).pop("host_name", None)
+    for row in document.get("benchmarks", []):
+        row.pop("samples_ms", None)
+    return document
 
 
 def write(folder, name, document):
     """`folder`: of results/, or an output.Folder."""
-    document.get("context", {}).pop("host_name", None)
-    for row in document.get("benchmarks", []):
-        row.pop("samples_ms", None)
     named = folder.file if isinstance(folder, output.Folder) else folder.joinpath
     output.write(named(f"{name}.json"), json_lines(document))
 
@@ -117,11 +119,11 @@ def measure_frames(model):
     return {"frames": rows_of}
 
 
-def measure_suite(name, model):
-    words = rows.DOCS_SUITES[name].split()
+def measure_suite(name, model, options, right=False):
+    words = options.split()
     if words[:1] == ["sponza"]:
         words = ["--scene=scenes/sponza_suns.json", *sponza_of(model), *words[1:]]
-    return run("bench", name, *words, "--output")
+    return run("bench", name, *words, "--output", right=right)
 
 
 def draw_front():
@@ -136,7 +138,8 @@ def draw_front():
 # after them.
 PARTS = {
     "frames": measure_frames,
-    **{name: functools.partial(measure_suite, name) for name in rows.DOCS_SUITES},
+    **{name: functools.partial(measure_suite, name, options=options)
+       for name, options in rows.DOCS_SUITES.items()},
     **{name: functools.partial(measure_quality, name) for name in rows.QUALITY_FILES},
     "quality-media": measure_media,
     "bake": lambda model: {"rows": bake.measure(model), "part": bake.measure_part()},

@@ -6,9 +6,10 @@
 Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
 DIR (out/paper), a new or empty folder or one of an earlier run. A second run with the same program,
 scripts, model and device continues: it measures the parts that it lacks.
-Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, large
-RSMs and srbf14's frames, computes lobes on the host, and times each row two or three times. --record puts the numbers into results/docs and the figures into docs/images;
-scripts/tables then writes the tables. REPRODUCING.md has the minutes of each part.
+Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, large RSMs
+and srbf14's frames, and times each row two or three times. --record puts the numbers into
+results/docs and the figures into docs/images; scripts/tables then writes the tables. REPRODUCING.md
+has the minutes of each part.
 
 Exit code 5: numbers left the tolerances of results/paper/expected.json; they are listed. Times are
 not compared. Needs the packages of scripts/setup.
@@ -25,17 +26,9 @@ import time
 from . import (BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, model_files, output,
                run_clpv, tables, verdicts)
 from .expected import CLAIMS, PARTS
-from .measure import measured_with, run, write
+from .measure import measure_suite, measured_with, write
 
 LEFT = 5  # exit code
-
-
-def of_table1(arguments):
-    document = run("bench", "table1", "--scene=scenes/sponza_suns.json",
-                   f"--model={arguments.model}", "--camera=curtains",
-                   f"--repetitions={2 if arguments.quick else 7}", "--output", right=True)
-    document["context"].pop("host_name", None)
-    return document
 
 
 def result_of(name, arguments):
@@ -43,7 +36,8 @@ def result_of(name, arguments):
     from . import claims, figures
 
     if name == "table1":
-        return of_table1(arguments)
+        repetitions = 2 if arguments.quick else 7
+        return measure_suite(name, arguments.model, f"sponza --repetitions={repetitions}", True)
     return figures.paper(arguments) if name == "figures" else getattr(claims, name)(arguments)
 
 
@@ -74,13 +68,13 @@ def key_of(arguments):
 def earlier(out, name, key):
     """The part of an earlier run with this key; None if there is none, or if it lacks one of its
     files. Reports a damaged one."""
-    if not (out.path / name).exists():
-        return None
     try:
         found = json.loads((out.path / name).read_bytes())
         whole = all((out.path / file).is_file() for file in found["files"])
         if found["key"] == key and whole:
             return {**found, "result": found["result"], "minutes": float(found["minutes"])}
+    except FileNotFoundError:
+        return None
     except (OSError, ValueError, KeyError, TypeError) as error:
         print(f"scripts/reproduce: {out.path / name}: damaged ({type(error).__name__}: {error}): "
               "measured again", file=sys.stderr)
