@@ -7,7 +7,7 @@ import pathlib
 import sys
 import tempfile
 
-from . import ROOT, run_clpv
+from . import ROOT, cells, run_clpv
 
 sys.path.insert(0, str(ROOT / "scenes"))
 import generate_leaks as scenes  # noqa: E402
@@ -74,11 +74,9 @@ def measure_part():
 
 def mean(rows, name, source, place, fine):
     """Mean of a column over all scenes, at the fine or the coarse spacing."""
-    found = [
-        row[place] for row in rows if row["format"] == name and row["source"] == source
-        and row["spacing"] == SPACINGS[kind_of(row["scene"])][fine]
-    ]
-    return sum(found) / len(found)
+    found = cells.matching(rows, {"format": name, "source": source})
+    return cells.mean_of(row[place] for row in found
+                         if row["spacing"] == SPACINGS[kind_of(row["scene"])][fine])
 
 
 def over_bytes(rows, name, source, place):

@@ -143,9 +143,9 @@ def sum_of(lines, key):
     return round(sum(values), 3) if len(values) > 1 else values[0]
 
 
-WORDS = {"__builtins__": {}, "abs": abs, "all": all, "hypot": math.hypot, "len": len, "light_ms": light_ms, "max": max,
-         "mean_of": mean_of, "min": min, "ms_of": ms_of, "ratio": ratio, "sorted": sorted,
-         "sum": sum, "sum_of": sum_of, "texts": texts, "zip": zip}
+WORDS = {"__builtins__": {}, "abs": abs, "all": all, "hypot": math.hypot, "len": len,
+         "light_ms": light_ms, "max": max, "mean_of": mean_of, "min": min, "ms_of": ms_of,
+         "ratio": ratio, "sorted": sorted, "sum": sum, "sum_of": sum_of, "texts": texts, "zip": zip}
 
 
 def evaluated(expression, row):
@@ -221,7 +221,8 @@ def table(spec):
     body = [[*(shown(form, row) for form in columns.values()),
              *(cell(row, column, spec) for column in across.values()),
              *(shown(form, row) for form in after.values())] for row in lines]
-    return [[*columns, *across, *after], *body, *(table(spec["then"])[1:] if "then" in spec else [])]
+    more = table(spec["then"])[1:] if "then" in spec else []
+    return [[*columns, *across, *after], *body, *more]
 
 
 def cell(row, column, spec):

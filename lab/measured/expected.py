@@ -18,8 +18,8 @@ from . import cells
 PARTS = json.loads(pathlib.Path(__file__).with_name("parts.json").read_text(encoding="utf-8"))
 CLAIMS = [name for name, part in PARTS.items() if part["file"] == "claims"]
 # Fields that name a row, and fields that are no results.
-IDENTITY = ("basis", "lobe", "transport", "n", "lambda", "entries", "cascade_size", "rsm_size", "iterations", "cascade-size", "image", "options", "camera",
-            "size")
+IDENTITY = ("basis", "lobe", "transport", "n", "lambda", "entries", "cascade_size", "rsm_size",
+            "iterations", "cascade-size", "image", "options", "camera", "size")
 SKIPPED = ("floor_pixels", "views", "apart")
 
 

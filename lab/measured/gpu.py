@@ -155,7 +155,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         report = measure(options, pathlib.Path(folder))
     output.write(options.output, json_lines(report))
-    print(tables.drawn(cells.table({**TABLE, "rows": {"each": report["frames"], "let": MS}})))
+    rows = {"each": report["frames"], "let": MS}
+    print(tables.drawn(cells.table({**TABLE, "rows": rows})), end="")
     bad = [row for row in report["frames"] if "failed" in row or "differ" in row["hash"]]
     bad += report["check"].get("bad", []) + report["check first"].get("bad", [])
     for row in bad:

@@ -28,7 +28,8 @@ import subprocess
 import sys
 import tempfile
 
-from . import CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows, run_clpv
+from . import (CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows,
+               run_clpv)
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/

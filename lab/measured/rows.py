@@ -25,7 +25,7 @@ DATA = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding
 
 
 def options_of(text):
-    """{option: value} of "--preset=best --grid=16", where FAST stands for the options of that name."""
+    """{option: value} of "--preset=best --grid=16"; FAST stands for the options of that name."""
     options = {}
     for word in text.split():
         if word.startswith("--"):
@@ -56,6 +56,7 @@ def runs_of(text):
         yield functools.reduce(operator.or_, parts)
 
 
-QUALITY_FILES = {name: (each["given"].split(), [run for text in each["runs"] for run in runs_of(text)])
+QUALITY_FILES = {name: (each["given"].split(),
+                        [run for text in each["runs"] for run in runs_of(text)])
                  for name, each in DATA["QUALITY_FILES"].items()}
 VIEWS = QUALITY_FILES["quality"][0][:-1]

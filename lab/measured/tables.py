@@ -7,8 +7,8 @@ from results/docs and lab/results.
     scripts/tables --check    changes nothing; fails if one of them differs from the results
     scripts/tables --list     names of all tables
 
-scripts/measure writes results/docs. tables.json has the tables (cells.py says how they are written),
-but for verdicts and light probes at equal bytes, which are functions here. Only the
+scripts/measure writes results/docs. tables.json has the tables, written as cells.py says, but for
+verdicts and light probes at equal bytes, which are functions here. Only the
 standard library.
 """
 import functools

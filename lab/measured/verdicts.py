@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The paper's claims judged by rule, for results/paper/claims.json and docs/paper/figures.md.
 
-verdicts.json has the claims, in the order of docs/paper/figures.md. `rows`: as in cells.py, a row for
-each point of the claim's axis. `at`: key of a row's place on the axis, or a form of it. `holds`:
-expression of a row: True, False, or None for 'not resolved'. `numbers`: form of a row. The verdict is
-a sentence made from the outcomes. Only the standard library.
+verdicts.json has the claims, in the order of docs/paper/figures.md. `rows`: as in cells.py, a row
+for each point of the claim's axis. `at`: key of a row's place on the axis, or a form of it. `holds`:
+expression of a row: True, False, or None for 'not resolved'. `numbers`: form of a row. The verdict
+is a sentence made from the outcomes. Only the standard library.
 """
 import itertools
 import json
