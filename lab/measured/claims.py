@@ -142,14 +142,15 @@ class Views:
         noise = noise or self.noise
         key = camera, view, noise
         if key not in Views.traced:
-            Views.traced[key] = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
+            Views.traced[key] = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, bounces=1,
+                                               noise=noise)
             Views.traced[key].save(self.out.file(f"truths/{camera}-{view}-{noise:g}.exr"))
         return Views.traced[key]
 
     def renderer(self, **options):
-        """Lobes of --preset paper are constants: the light of run-time lobes within 2e-4, five
-        times as fast."""
-        fixed = {"width": WIDTH, "height": HEIGHT}
+        """By one bounce, as in the paper. Lobes of --preset paper are constants: the light of
+        run-time lobes within 2e-4, five times as fast."""
+        fixed = {"width": WIDTH, "height": HEIGHT, "bounces": 1}
         if options.get("preset") == "paper":
             fixed["lobe_time"] = "host"
         return clpv.Renderer(self.scene, **{**fixed, **options})
@@ -310,7 +311,7 @@ def arcade(arguments):
                          near=far - AT_WALL - 2.4,
                          fov=math.degrees(2 * math.atan(height / (far - AT_WALL))))
     traced = clpv.pathtrace(views_of.scene, "irradiance", before, ACROSS,
-                            round(ACROSS * height / half), samples=SAMPLES)
+                            round(ACROSS * height / half), bounces=1, samples=SAMPLES)
     traced.save(views_of.out.file("truths/arcade.exr"))
     line = traced.array[..., :3].astype(float).sum(axis=(0, 2))
     points = [(at, y, AT_WALL + BEFORE_WALL) for at in x]

@@ -51,8 +51,8 @@ class Frames:
 
     @functools.cache
     def rendered(self, options):
-        renderer = self.views.renderer(**self.size, **{
-            name.replace("-", "_"): value for name, value in options_of(options).items()})
+        renderer = self.views.renderer(**self.size, **{"bounces": "auto", **{
+            name.replace("-", "_"): value for name, value in options_of(options).items()}})
         return {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
 
     def image(self, layer, options):
@@ -89,7 +89,7 @@ def tiles_of(frames, spec):
 
 def answer(frames, out):
     tiles, truth = [], clpv.pathtrace(frames.views.scene, "indirect", frames.camera, **frames.size,
-                                      noise=NOISE)
+                                      bounces=1, noise=NOISE)
     for preset, basis in itertools.product(PRESETS, BASES):
         image = frames.rendered(f"--basis={basis} --preset={preset} --bounces=1")["indirect"]
         error = f"NRMSE {100 * clpv.compare(image, truth).nrmse:.0f} %"
