@@ -11,8 +11,8 @@
 namespace clpv::test {
 
 inline const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
-                         kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf",
-                         kTinyRoom = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.json";  // one cascade
+                         kTiny = CLPV_SOURCE_DIR "/tests/support/tiny.gltf",
+                         kTinyRoom = CLPV_SOURCE_DIR "/tests/support/tiny.json";  // one cascade
 
 /// Options of a small frame by few steps, for starts of the program that need any frame.
 inline const std::string kSmallSteps =

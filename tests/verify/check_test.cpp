@@ -64,7 +64,7 @@ TEST_P(LongKernels, AgreeInEveryVolumeFormat) {
 }
 
 // Kernels with the other number of lanes: one on a CPU, as GPUs get them. Workloads of
-// tests/oclgrind also run them, on smaller scenes.
+// lab/tests/oclgrind also run them, on smaller scenes.
 TEST(LongCheck, KernelsAgreeInTheOtherNumberOfLanes) {
   Device device = test::test_session().device();
   device.lanes = device.lanes == 8 ? 1 : 8;

@@ -20,10 +20,10 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / folder)
-                for folder in ("python", "lab/python", "scripts", "lab/scripts")]
+                for folder in ("python", "lab/python", "lab")]
 from clpv_lab.score import __main__ as command, errors, exr, suite as scored  # noqa: E402
 from exr_writer import write  # noqa: E402
-from lab_measured import suite  # noqa: E402
+from measured import suite  # noqa: E402
 
 CLPV = os.environ["CLPV"]
 SIZE = 40, 24

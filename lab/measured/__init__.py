@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Measured numbers: scripts/measure and scripts/reproduce measure them and draw charts,
+scripts/tables shows them.
+
+rows.py has what is measured, once for both.
+"""
+import hashlib
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = ROOT / os.environ.get("CLPV_BUILD_DIR", "build")
+CLPV = BUILD / "clpv"
+LAB = BUILD / "clpv-lab"  # has other methods and peers too
+RESULTS = ROOT / "results"
+os.environ["MPLCONFIGDIR"] = os.environ.get("MPLCONFIGDIR") or str(BUILD / "matplotlib")  # not in HOME
+sys.path.insert(0, str(ROOT / "python"))
+from clpv import output  # noqa: E402
+
+
+def native():
+    """The package clpv with the native module of the build."""
+    import clpv
+    clpv.__path__.append(str(BUILD / "python/clpv"))
+    return clpv
+
+
+def run_clpv(*arguments, check=True):
+    """Returns what clpv prints."""
+    return subprocess.run([str(CLPV), *map(str, arguments)], stdout=subprocess.PIPE, text=True,
+                          check=check, cwd=ROOT).stdout
+
+
+def sheet(path, title, columns, size, tiles, dpi=100, **options):
+    """Draws tiles (pixels, caption), row by row, under a title. `size`: of a tile [inches]. A tile
+    without pixels stays empty."""
+    from clpv.draw import style
+    made = style.Sheet([title], columns, len(tiles), size, above=True)
+    for i, (pixels, caption) in enumerate(tiles):
+        if pixels is not None:
+            made.tile(i, caption).imshow(pixels, **options)
+    made.save(path, dpi)
+
+
+def described():
+    """Commit of this tree, as cmake/git_describe.cmake finds it: `unknown` without git, and in a
+    source archive, which may lie in another repository."""
+    if (ROOT / ".git").exists():
+        try:
+            return subprocess.run(["git", "describe", "--always", "--dirty", "--tags"],
+                                  capture_output=True, text=True, check=True,
+                                  cwd=ROOT).stdout.strip()
+        except (OSError, subprocess.CalledProcessError):
+            pass
+    return "unknown"
+
+
+def hash_of(paths):
+    """SHA-256 of files, and of all files in folders, with their names."""
+    sums = hashlib.sha256()
+    for path in paths:
+        for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
+            if file.is_file() and "__pycache__" not in file.parts:
+                content = hashlib.sha256(file.read_bytes()).hexdigest()
+                sums.update(f"{file.relative_to(path.parent)} {content}\n".encode())
+    return sums.hexdigest()
+
+
+def model_files(model):
+    """The model and the files that it names."""
+    if model.suffix == ".glb":
+        return [model]
+    document = json.loads(model.read_text())
+    uris = [entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
+            if "uri" in entry]
+    return [model, *(model.parent / urllib.parse.unquote(uri) for uri in uris
+                     if not uri.startswith("data:"))]
+
+
+def json_lines(document):
+    """JSON with a line for each row of its lists and for each member of its objects."""
+    members = []
+    for key, value in document.items():
+        if isinstance(value, dict) and value:
+            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}"
+                               for name, each in value.items())
+            members.append(f"{json.dumps(key)}: {{\n{lines}\n}}")
+        else:
+            lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
+            members.append(f"{json.dumps(key)}: " +
+                           (f"[\n{lines}\n]" if lines else json.dumps(value)))
+    return "{" + ",\n".join(members) + "}\n"

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""Measures a GPU that is there for a few minutes, in one command (docs/gpu.md).
+
+    scripts/gpu -o FILE.json [--device NAME] [--clpv PROGRAM] [--before PROGRAM] [--model PATH/Sponza.gltf]
+                [--first STAGE,...] [--minutes 9] [--quick]
+
+Devices; frames of the defaults, 1920x1080, `fine`, `paper`, one bounce and a camera that only
+moves, also of an older program; hashes of the images of two runs; `clpv check`,
+thorough, stages of --first first. A step that the time left does not hold is cut off or left out,
+and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
+--model, else the atrium. --quick: small frames and the short check, for tests.
+"""
+import argparse
+import hashlib
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+from . import CLPV, ROOT, cells, described, json_lines, output, tables
+
+FRAMES = {
+    "defaults": ["--width", "960", "--height", "540"],
+    "1080p": ["--width", "1920", "--height", "1080"],
+    "fine": ["--width", "960", "--height", "540", "--preset", "fine"],
+    "paper": ["--width", "960", "--height", "540", "--preset", "paper"],
+    "one bounce": ["--width", "960", "--height", "540", "--bounces", "1"],
+}
+QUICK = ["--width", "48", "--height", "27"]
+COUNTS = "launches", "fills", "waits", "arguments"
+LEAST = 5  # [s] for a step
+
+
+class Clock:
+    """The time that is left."""
+
+    def __init__(self, minutes):
+        self.end = time.monotonic() + 60 * minutes
+
+    def run(self, command):
+        """Runs a command: its stdout, and None or why it has none."""
+        left = self.end - time.monotonic()
+        if left < LEAST:
+            return "", "left out: no time left"
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=left,
+                                  check=False, cwd=ROOT)
+        except subprocess.TimeoutExpired as error:
+            return (error.stdout or b"").decode(), f"cut off after {left:.0f} s"
+        if done.returncode == 0:
+            return done.stdout, None
+        return done.stdout, f"exit code {done.returncode}: {done.stderr.strip()[-500:]}"
+
+
+def frame(clock, program, scene, options, folder):
+    """Times, counts and the image's hash of a frame, measured twice; `hash` is that of both."""
+    row, hashes = {}, set()
+    for _ in range(2):
+        stats, image = folder / "stats.json", folder / "image.exr"
+        _, why = clock.run([program, *scene, *options, "-o", image, "--stats", stats])
+        if why:
+            return {**dict.fromkeys(COUNTS), "times": [], "hash": "", "failed": why}
+        hashes.add(hashlib.sha256(image.read_bytes()).hexdigest())
+        found = json.loads(stats.read_text())
+        if row and found["times"][0]["median"] > row["times"][0]["median"]:
+            continue
+        row = {key: found.get(key) for key in (*COUNTS, "written_bytes", "host_ms", "device")}
+        row["times"], row["kernels"] = found["times"], found["kernels"]
+    return {**row, "hash": hashes.pop() if len(hashes) == 1 else "two runs differ"}
+
+
+def bench(clock, program, suite, device, *options):
+    """Rows of a suite of `clpv bench`: name, status, median, counts."""
+    text, why = clock.run([program, *device, "bench", suite, "--format", "json", *options])
+    if why:
+        return [{"failed": why}]
+    keys = "name", "status", "median", *COUNTS
+    return [{key: row.get(key) for key in keys} for row in json.loads(text)["benchmarks"]]
+
+
+def check(clock, program, device, options, stages):
+    """Results of `clpv check` by status, of these stages or of all."""
+    chosen = ["--stage", *stages] if stages else []
+    text, why = clock.run([program, *device, "check", "--format", "json", *options, *chosen])
+    if not text or (why and "exit code" not in why):
+        return {"failed": why}
+    results = json.loads(text)["checks"]
+    found = {}
+    for result in results:
+        found[result["status"]] = found.get(result["status"], 0) + 1
+    bad = [result for result in results if result["status"] in ("wrong", "failed")]
+    return {"results": found, "bad": bad}
+
+
+# Markdown: a row a frame, before and after; "-" for what failed.
+TABLE = {
+    "columns": {"frame": "{frame}", "program": "{program}", "frame [ms]": "{ms:.2f}",
+                "host [ms]": "{host:.2f}", **{name: f"{{{name}:.0f}}" for name in COUNTS}}
+}
+MS = {"ms": "ms_of(times, 'frame') or None", "host": "ms_of(times, 'host') or None"}
+
+
+def measure(options, folder):
+    clock = Clock(options.minutes)
+    device = ["--device", options.device] if options.device else []
+    programs = {"this": options.clpv.resolve()}
+    if options.before:
+        programs["before"] = options.before.resolve()
+    scene = [*device, "render"]
+    if options.model:
+        scene += [ROOT / "scenes/sponza.json", "--model", options.model.resolve(), "--camera",
+                  "curtains"]
+    else:
+        scene.append(ROOT / "scenes/atrium.json")
+    scene += ["--frames", "2" if options.quick else "15"]
+    # Frames first: they are what a GPU is lent for. Each of both programs in turn.
+    frames = []
+    for name, chosen in FRAMES.items():
+        size = QUICK + chosen[4:] if options.quick else chosen
+        for program, path in programs.items():
+            frames.append({"frame": name, "program": program,
+                           **frame(clock, path, scene, size, folder)})
+    this, few = programs["this"], ["--repetitions", "2"] if options.quick else []
+    text, why = clock.run([this, "devices", "--format", "json"])
+    report = {
+        "context": {"commit": described(), "scene": "Sponza" if options.model else "atrium",
+                    "quick": options.quick, "before": str(options.before or "")},
+        "devices": why or json.loads(text),
+        "frames": frames,
+        "moving": bench(clock, this, "frame", device, "--filter",
+                        "^frame/sh2.*/best/recompute:nothing", *few),
+    }
+    thorough = [] if options.quick else ["--thorough"]
+    stages = [stage for stage in options.first.split(",") if stage]
+    report["check first"] = check(clock, this, device, thorough, stages) if stages else {}
+    report["check"] = {} if options.quick and stages else check(clock, this, device, thorough, [])
+    return report
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
+    parser.add_argument("--device", help="as of clpv --device")
+    parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
+    parser.add_argument("--before", type=pathlib.Path, help="an older program")
+    parser.add_argument("--model", type=pathlib.Path)
+    parser.add_argument("--first", default="", help="stages to check first")
+    parser.add_argument("--minutes", type=float, default=9)
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
+    output.target_of(options.output)  # found before the work
+    with tempfile.TemporaryDirectory() as folder:
+        report = measure(options, pathlib.Path(folder))
+    output.write(options.output, json_lines(report))
+    rows = {"each": report["frames"], "let": MS}
+    print(tables.drawn(cells.table({**TABLE, "rows": rows})), end="")
+    bad = [row for row in report["frames"] if "failed" in row or "differ" in row["hash"]]
+    bad += report["check"].get("bad", []) + report["check first"].get("bad", [])
+    for row in bad:
+        print(f"scripts/gpu: {json.dumps(row)}", file=sys.stderr)
+    return 1 if bad else 0

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""Measures how much light leaks into the rooms of scenes/generate_leaks.py.
+
+    scripts/leaks [--shapes sheet,wall1] [--lights sun,sky,lamp] [--bounces 1,all] [--offsets 8]
+                  [-o FILE.json] [--OPTION=VALUE...]
+
+Prints a Markdown table. Leak: mean indirect irradiance of the room's walls, floor and ceiling, in %
+of the irradiance of the open ground; the worst of positions of the room between the cells. Open
+rooms have the mean over the positions, and path tracing's beside it. Bounces `direct`: mean
+irradiance of direct light on 240x135 pixels of sealed rooms. FILE.json has a row for each number. Other options
+are those of `clpv render`. Needs a build.
+"""
+import argparse
+import itertools
+import math
+import pathlib
+import sys
+import tempfile
+
+import numpy
+
+from . import ROOT, json_lines, native, output, rows as known, tables
+from .cells import found
+
+sys.path.insert(0, str(ROOT / "scenes"))
+import generate_leaks as scenes  # noqa: E402  pylint: disable=wrong-import-position
+
+clpv = native()
+POINTS = 5  # along each edge of a face
+SIZE = 240, 135  # size of the images of direct light
+NOISE = 0.05  # noise of path tracing
+# Irradiance of open ground: by the sun, by the even sky, and 3.5 m below the lamp.
+GROUND = {
+    "sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2
+}
+
+
+def offsets(count):
+    """Positions between the cells of the finest cascade [m]; the first is 0."""
+    return [[scenes.CELL * 0.37 * (i >> axis & 1) for axis in range(3)] for i in range(count)]
+
+
+def share(light, irradiance):
+    return 100 * float(irradiance[..., 1].mean()) / GROUND[light]
+
+
+class Room:
+    """A shape under a light at one of the positions."""
+
+    def __init__(self, folder, shape, light, offset):
+        self.shape, self.light = shape, light
+        self.scene = clpv.Scene(f"{folder}/{shape}-{light}.json")
+        points, self.normals = map(numpy.array, zip(*scenes.inner_points(shape, POINTS)))
+        self.points = points + numpy.array(offset)
+
+    def leak(self, bounces, options):
+        """Indirect light inside [%]."""
+        with clpv.Renderer(self.scene, bounces=bounces, **options) as renderer:
+            renderer.update(self.scene.cameras[0].eye)
+            return share(self.light, renderer.irradiance(self.points, self.normals))
+
+    def direct(self, options):
+        """Direct light inside [%]."""
+        with clpv.Renderer(self.scene, **options) as renderer:
+            image = renderer.render("direct", size=SIZE).array
+            return share(self.light, math.pi / scenes.GREY[1] * image)
+
+    def traced(self, bounces):
+        """Indirect light inside by path tracing [%]."""
+        light = self.scene.pathtrace_points(self.points, self.normals, bounces=bounces,
+                                            noise=NOISE)
+        return share(self.light, light["indirect"])
+
+
+def measure(shapes, columns, count, options):
+    """Rows: shape, light, bounces ("direct": direct light), leak and, in open rooms, truth.
+    `columns`: pairs of light and bounces."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        found = {}
+        for offset in offsets(count):
+            scenes.write(folder, offset, shapes)
+            for shape, (light, n) in itertools.product(shapes, columns):
+                room = Room(folder, shape, light, offset)
+                if n != "direct":
+                    found.setdefault((shape, light, n), []).append(room.leak(n, options))
+                elif shape not in known.OPEN_ROOMS:
+                    found.setdefault((shape, light, n), []).append(room.direct(options))
+        for (shape, light, n), leaks in found.items():
+            row = {"shape": shape, "light": light, "bounces": n, "leak": max(leaks)}
+            if shape in known.OPEN_ROOMS:
+                row["leak"] = sum(leaks) / len(leaks)
+                row["truth"] = Room(folder, shape, light, offset).traced(n)
+            rows.append(row)
+    return rows
+
+
+def lines(rows):
+    """Cells of a table: a line for each shape."""
+    def cell(shape, light, bounces):
+        row = found(rows, shape=shape, light=light, bounces=bounces)
+        truth = f" ({row['truth']:.2g})" if row and "truth" in row else ""
+        return f"{row['leak']:.2g}{truth}" if row else "-"
+
+    columns = dict.fromkeys((row["light"], row["bounces"]) for row in rows)
+    return [["room", *(f"{light}, {bounces}" for light, bounces in columns)],
+            *([shape, *(cell(shape, *column) for column in columns)]
+              for shape in dict.fromkeys(row["shape"] for row in rows))]
+
+
+def number_of(bounces):
+    return bounces if bounces in ("all", "direct") else int(bounces)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--shapes", default=",".join(name for name, _ in scenes.shapes()))
+    parser.add_argument("--lights", default="sun")
+    parser.add_argument("--bounces", default="1,all")
+    parser.add_argument("--offsets", type=int, default=8)
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE.json")
+    arguments, others = parser.parse_known_args()
+    names = [name for name, _ in scenes.shapes()]
+    shapes = arguments.shapes.split(",")
+    if unknown := set(shapes) - set(names):
+        parser.error(f"--shapes {','.join(unknown)}: allowed: {', '.join(names)}")
+    options = {}
+    for other in others:
+        name, equals, value = other.removeprefix("--").partition("=")
+        if not equals:
+            parser.error(f"{other}: allowed: --OPTION=VALUE of clpv render")
+        options[name.replace("-", "_")] = value
+    columns = [(light, number_of(n)) for light in arguments.lights.split(",")
+               for n in arguments.bounces.split(",")]
+    if arguments.output:
+        output.target_of(arguments.output)  # found before the work
+    rows = measure(shapes, columns, arguments.offsets, options)
+    if arguments.output:
+        output.write(arguments.output, json_lines({"leaks": rows}))
+    print(tables.drawn(lines(rows)), end="")
