@@ -13,10 +13,10 @@ namespace clpv {
 /// Faces of a cell by outward normal: +x, -x, +y, -y, +z, -z.
 inline constexpr int kCellFaces = 6;
 
-/// Sweeps for all bounces in a medium that scatters, along 24 directions.
+/// Sweeps for all bounces in a medium that scatters.
 inline constexpr int kScatteredSweeps = 8;
 
-/// Sweeps for all bounces without such a medium before the last one, along 24 directions: default
+/// Sweeps for all bounces without such a medium before the last one: default
 /// and least number. Further ones carry light farther from where it arrived (docs/method.md, 'More
 /// bounces').
 inline constexpr int kSeriesSweeps = 3, kLeastSeriesSweeps = 2;

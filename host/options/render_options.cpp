@@ -121,7 +121,7 @@ void for_each_option(Options& o, Visit&& visit) {
         Named{});
   visit(
       "bounce-sweeps", o.bounce_sweeps,
-      "sweeps along 24 directions before the rest of --bounces all is estimated; more carry light "
+      "sweeps before the rest of --bounces all is estimated; more carry light "
       "farther through corridors",
       Range{kLeastSeriesSweeps, kMaxBounceSweeps});
   visit("layout", o.layout,

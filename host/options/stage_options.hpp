@@ -48,7 +48,8 @@ inline constexpr auto kNames<SweepForm> = name_list("suited", "bins", "groups", 
 struct SweepOptions {
   int grid = 32;           ///< cells along each axis
   std::vector<int> parts;  ///< parts of each bin (sweep_bins), per cascade, finest first
-  bool blocking = true;    ///< light is blocked by geometry volumes
+  bool blocking = true;    ///< geometry volumes block light
+  bool points = false;     ///< links transmit the share of points that see both ends
   /// Limit of the white furnace's radiance: 1 where not all surfaces block light.
   double most_white = kNoLimitOfWhite;
   Bounces bounces = Bounces::one;  ///< more than one needs reflectors in set_surfaces()

@@ -135,12 +135,10 @@ class Sweep {
       Volume& transmittances = transmittance_[link_of(link.offset)];
       for_each_cell(n_, [&](const glm::ivec3& p) {
         double& t = transmittances.at(0, 0, p.x, p.y, p.z);
-        if (cascade_.geometry == nullptr)
-          t = 1;
-        else if (cascade_.occluded != nullptr)
-          t = seen_share(*cascade_.occluded, n_, p, -link.offset);
-        else
-          t = transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
+        t = cascade_.geometry == nullptr
+                ? 1
+                : transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
+        if (cascade_.occluded != nullptr) t *= seen_share(*cascade_.occluded, n_, p, -link.offset);
       });
     }
   }

@@ -23,7 +23,7 @@ struct SweptCascade {
   const ClpvMedium* medium = nullptr;  ///< null: none
   /// The medium's source function, of scattered_in_cells(); null: 0.
   const Volume* scattered = nullptr;
-  /// Bits of visibility_masks(): links transmit seen_share(); null: what `geometry` does not block.
+  /// Bits of visibility_masks(), for seen_share() of links; null: 1.
   const std::vector<std::uint8_t>* occluded = nullptr;
 };
 

@@ -42,6 +42,7 @@ constexpr float kMediumScale = 0.25f;
 SweepOptions with_sky(const SweepProblem& problem) {
   SweepOptions options = problem.options;
   options.sky = problem.sky ? &*problem.sky : nullptr;
+  options.points = !problem.occluded.empty();
   return options;
 }
 
@@ -75,7 +76,7 @@ struct SweepWork {
 
   void run() {
     for (std::size_t i = problem.grids.size(); i-- > 0;) {
-      if (problem.options.blocking) sweeper.set_blockers(i, blockers[i], occluded);
+      if (problem.options.blocking) sweeper.set_blockers(i, &blockers[i], occluded);
       if (!white.empty())
         sweeper.set_surfaces(i, problem.grids, white[i], bounces() ? &reflectors[i] : nullptr,
                              swept[i]);

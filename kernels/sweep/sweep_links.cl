@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Computes the transmittance T in [0, 1] of each link into a cell for the sweep: the share of the
-// sample points about it that see both ends, of those that see one (docs/method.md, 'The sweep').
+// Computes the transmittance of each link into a cell for the sweep: of the sample points about it
+// that see an end, the share that see both (docs/method.md, 'The sweep').
 //
-//   T = S_ab / (S_a + S_b - S_ab)    0 if no point sees an end
+//   T = S_ab / (S_a + S_b - S_ab) (1 - clamp(B, 0, 1))    0 if no point sees an end
 //
 // S_a and S_b are the points that see centres a and b, S_ab those that see both, in all cubes that
-// the link crosses. Without points, T = 1 - clamp(B, 0, 1), B: blocking potential
-// (steps/link_transmittance.h).
+// the link crosses; B is the blocking potential (steps/link_transmittance.h).
 //
-// In:   blockers       geometry volume, samples at the cells' corners
-//       hidden         hidden points of each cube between cells (seen_points.cl)
-//       points         1: of hidden points; 0: of the geometry volume
 // Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use
 //                      (sweep_layout.h)
-// From the host (host/pipeline/sweep/sweep_literals.cpp): literals of link_transmittance.h,
-// and CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x, then as many across y
-// and z. A work-item computes a tile of W x W cells of a slice.
+// In:   blockers       with CLPV_POTENTIAL, else B = 0: geometry volume, samples at the cells'
+//                      corners
+//       hidden         with CLPV_POINTS, else all are seen: hidden points of each cube between
+//                      cells (seen_points.cl)
+// From the host (host/pipeline/sweep/sweep_literals.cpp): these two, literals of
+// link_transmittance.h, and CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x,
+// then as many across y and z. A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "steps/link_transmittance.h"
 #include "sweep/sweep_tiles.h"
 
 __constant const int volume_links[3 * CLPV_AXIS_LINKS] = CLPV_VOLUME_LINKS;
 
+#if CLPV_POINTS
 // W words of a row of cubes, from index `at` on.
 CLPV_INLINE intW read_words(__global const int* from, const int at) {
 #if W == 8
@@ -43,10 +44,10 @@ static inline bool crosses(const int o, const int sx, const int sy, const int sz
          (sz == 0 || (o >> 2) == (sz > 0));
 }
 
-// T of every link into W cells, from hidden points. A cell's centre is number 7 - o in the cube at
-// its octant o.
-CLPV_INLINE Links seen_shares(__global const int* hidden, const int x, const int y, const int z) {
-  Links links;
+// Multiplies T of every link into W cells by the share of points. A cell's centre is number 7 - o
+// in the cube at its octant o.
+CLPV_INLINE Links seen_shares(Links links, __global const int* hidden, const int x, const int y,
+                              const int z) {
 #pragma unroll
   for (int link = 0; link < CLPV_LINKS; ++link) {
     const int sx = link_sides[3 * link], sy = link_sides[3 * link + 1],
@@ -65,13 +66,32 @@ CLPV_INLINE Links seen_shares(__global const int* hidden, const int x, const int
                   hidden_points(hidden, cube, centre_number(there));
       }
     }
-    links.c[link] = to_realW(both) / fmax(to_realW(either), ONE);
+    links.c[link] *= to_realW(both) / fmax(to_realW(either), ONE);
   }
   return links;
 }
 
-__kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* hidden, const int points,
-                          CLPV_BUFFER_OUT transmittance) {
+#endif
+
+#if !CLPV_POTENTIAL
+CLPV_INLINE Links open_links(void) {
+  Links links;
+#pragma unroll
+  for (int link = 0; link < CLPV_LINKS; ++link) links.c[link] = ONE;
+  return links;
+}
+#endif
+
+__kernel void sweep_links(CLPV_BUFFER_OUT transmittance
+#if CLPV_POTENTIAL
+                          ,
+                          CLPV_VOLUME_IN blockers
+#endif
+#if CLPV_POINTS
+                          ,
+                          __global const int* hidden
+#endif
+) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
@@ -80,8 +100,14 @@ __kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* hidden, c
     for (int r = 0; r < W; ++r) tiles[v].row[r] = 0.0f;
   }
   for (int r = 0; r < W && y + r < CLPV_GRID; ++r) {
-    const Links links = points ? seen_shares(hidden, x, y + r, z)
-                               : find_transmittance(blockers, x, y + r, z);
+#if CLPV_POTENTIAL
+    Links links = find_transmittance(blockers, x, y + r, z);
+#else
+    Links links = open_links();
+#endif
+#if CLPV_POINTS
+    links = seen_shares(links, hidden, x, y + r, z);
+#endif
 #pragma unroll
     for (int v = 0; v < CLPV_AXIS_LINKS; ++v) {
       const int across_y = v + CLPV_AXIS_LINKS, across_z = v + 2 * CLPV_AXIS_LINKS;

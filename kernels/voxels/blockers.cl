@@ -15,7 +15,7 @@
 //                region before
 //       cascade  number of the cascade whose masks to write
 // A work-item voxelises a triangle. The integer part of w (voxelize_triangle.h) is the number of
-// the corner. From the host: CLPV_GRID, CLPV_MASKED.
+// the corner. From the host: CLPV_GRID, CLPV_MASKED, CLPV_ONLY_MASKED.
 #include "voxels/voxelize_triangle.h"
 #include "shared/blockers.h"
 
@@ -53,6 +53,7 @@ __kernel void voxelize_blockers(const ClpvRegion region, __global const uint* cl
       vertices + triangle.vertex[0], vertices + triangle.vertex[1], vertices + triangle.vertex[2]};
   __global const ClpvMaterial* material = materials + triangle.material;
   const bool masked = CLPV_MASKED && (material->flags & CLPV_MATERIAL_MASKED) != 0;
+  if (CLPV_ONLY_MASKED && !masked) return;
   GridCorners corners;
   if (!find_grid_corners(&region, corner, &corners)) return;
   int2 samples[3];  // range of samples along each axis that the triangle may cover

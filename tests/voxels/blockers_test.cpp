@@ -54,10 +54,10 @@ struct Field {
 };
 
 /// Shares of faces that are blocked, by axis, at corners.
-Field blocked(const SceneData& scene) {
+Field blocked(const SceneData& scene, bool only_masked = false) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {}))
+  VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {}, only_masked))
       .update(0, kCells, geometry);
   return {kGrid + 1, geometry.read(test_session())};
 }
@@ -107,8 +107,10 @@ TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
   add_quad(scene, {1.5f, 2, 1.5f}, {1, 0, 0}, {0, 0, 1},
            material);  // opaque from u 0 to 1/2, repeated beyond
   EXPECT_EQ(blocked(scene).sum(1), 0.5f);
+  EXPECT_EQ(blocked(scene, true).sum(1), 0.5f);
   scene.materials[material].flags = 0;
   EXPECT_EQ(blocked(scene).sum(1), 1) << "opaque materials ignore alpha";
+  EXPECT_EQ(blocked(scene, true).sum(1), 0) << "sample points see what they hide";
 }
 
 TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {

@@ -23,7 +23,8 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
       injected_(volumes(setup.injected_volumes(), setup.injected_shape(), "injected light",
                         setup.injects_at_once())),
       accumulated_(volumes(options_.cascades, setup.gathered_shape(), "accumulated light")),
-      geometry_(volumes(setup.geometry_volumes(), setup.geometry_shape(), "geometry volume")),
+      geometry_(volumes(setup.geometry_volumes(buffers.masked), setup.geometry_shape(),
+                        "geometry volume")),
       links_(options_.cascades),
       surfaces_(options_.cascades),
       visible_cells_(options_.cascades),
@@ -32,13 +33,16 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
     SweepOptions sweep = sweep_options(options_);
     sweep.medium = scene.medium;
     sweep.sky = scene.sky.get();
+    sweep.blocking = !geometry_.empty();
+    sweep.points = setup.links_by_points();
     sweeper_.emplace(session, *setup.basis, setup.transport, sweep);
   } else {
     propagator_.emplace(session, *setup.basis, setup.transport, propagate_options(options_));
   }
   if (!geometry_.empty() && !setup.blocked_by_view())
     blockers_.emplace(session, buffers,
-                      blocker_masks(buffers, options_.grid, options_.cascades, options_.format()));
+                      blocker_masks(buffers, options_.grid, options_.cascades, options_.format(),
+                                    setup.links_by_points()));
   const auto voxelise = [&](std::optional<VoxelField>& field, std::unique_ptr<Volume>& faces,
                             bool white) {
     field.emplace(session, buffers,
@@ -95,7 +99,7 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
                       .add(visibility_ && sweeper_ ? keys.triangles : place)
                       .add(lights_.sources_key(cascade))
                       .value();
-  if (!geometry_.empty()) keys.geometry = keys.triangles;
+  if (options_.blocked()) keys.geometry = keys.triangles;
   if (!geometry_.empty() && !blockers_)
     keys.geometry =
         Fingerprint().add(keys.triangles).add(lights_.rsms_key(cascade)).add(camera_->view).value();
@@ -169,18 +173,17 @@ void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
 }
 
 void FrameCascades::update_links(int cascade) {
-  const Volume* blockers = geometry(cascade);
-  if (blockers == nullptr) return;
+  if (!options_.blocked()) return;
   links_[cascade].update(keys_[cascade].geometry, [&] {
-    const Buffer closing = occluded(cascade);
+    const Buffer points = occluded(cascade);
     const StageScope scope(session_, {Pass::propagate, cascade});
-    sweeper_->set_blockers(cascade, *blockers, closing);
+    sweeper_->set_blockers(cascade, geometry(cascade), points);
   });
 }
 
-/// Bits that close links; an empty Buffer if nothing tests visibility or nothing blocks.
+/// Bits of points that links see; an empty Buffer if links transmit by geometry volumes alone.
 Buffer FrameCascades::occluded(int cascade) {
-  if (!visibility_ || !blockers_) return {};
+  if (!setup_.links_by_points()) return {};
   update_visibility(cascade);
   return visibility_->masks();
 }

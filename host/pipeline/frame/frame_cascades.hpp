@@ -86,14 +86,15 @@ class FrameCascades {
   const RenderOptions& options_;
   FrameLights& lights_;
   Injector injector_;
-  std::optional<VoxelField> blockers_;    ///< none: surfaces in the RSMs and the G-buffer block
-  std::optional<VoxelField> white_;       ///< none without a sweep
+  std::optional<VoxelField>
+      blockers_;                     ///< none: surfaces in images block, or sample points see links
+  std::optional<VoxelField> white_;  ///< none without a sweep
   std::optional<VoxelField> reflectors_;  ///< none with one bounce
   std::optional<VoxelField> visibility_;  ///< none: all cells light a surface
   std::optional<Propagator> propagator_;  ///< either propagator_ or sweeper_ is set
   std::optional<Sweeper> sweeper_;
   std::vector<CachedVolume> injected_, accumulated_;
-  std::vector<CachedVolume> geometry_;  ///< none without occlusion
+  std::vector<CachedVolume> geometry_;  ///< none without blockers that need it
   std::unique_ptr<Volume> white_faces_,
       reflected_;  ///< faces of white_ and reflectors_, as surfaces_ uses them
   /// Contents of the sweeper and of visibility_, per cascade.

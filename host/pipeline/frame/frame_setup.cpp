@@ -51,8 +51,8 @@ std::size_t FrameSetup::rsms_together() const {
   return std::max<std::size_t>(kAtOnce / (kRsmTexel * texels), 1);
 }
 
-int FrameSetup::geometry_volumes() const {
-  if (!options.blocked()) return 0;
+int FrameSetup::geometry_volumes(bool masked) const {
+  if (!options.blocked() || (links_by_points() && !masked)) return 0;
   return options.blockers == Blockers::scene ? options.cascades : 1;
 }
 

@@ -49,9 +49,14 @@ struct FrameSetup {
   int injected_volumes() const {
     return blocked_by_view() || injects_at_once() ? options.cascades : 1;
   }
-  /// Number of stored geometry volumes: one per cascade for scene blockers, else one; 0 without
-  /// occlusion.
-  int geometry_volumes() const;
+  /// Returns true if links of the sweep transmit what sample points see. Triangles of masked
+  /// materials, which hide no points, then block by a geometry volume.
+  bool links_by_points() const {
+    return sweeps() && options.blockers == Blockers::scene && options.gather == Gathering::visible;
+  }
+  /// Number of stored geometry volumes: one per cascade for scene blockers, else one; 0 if nothing
+  /// needs them. `masked`: the scene has masked materials.
+  int geometry_volumes(bool masked) const;
 };
 
 }  // namespace clpv

@@ -88,15 +88,18 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       session,
       2 * ordinates * bordered_plane_size(options.grid) * number_bytes(options.format.storage),
       "boundary condition of the sweep");
-  if (options.blocking) {
+  if (options.points) {
     count_hidden_points_.emplace(session, volumes_.program("sweep/seen_points.cl"),
                                  "count_hidden_points");
-    transmittance_.emplace(
-        session, volumes_.program("sweep/sweep_links.cl", sweep_links_literals(basis, transport)),
-        "sweep_links");
     hidden_ = zeroed_buffer(
         session, CLPV_HIDDEN_WORDS * bordered_volume_size(options.grid) * sizeof(cl_uint),
         "hidden points of the sweep's links");
+  }
+  if (blocks()) {
+    Literals literals = sweep_links_literals(basis, transport);
+    literals.flag("CLPV_POTENTIAL", options.blocking).flag("CLPV_POINTS", options.points);
+    transmittance_.emplace(session, volumes_.program("sweep/sweep_links.cl", std::move(literals)),
+                           "sweep_links");
   }
   if (options.medium)
     medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
@@ -131,7 +134,7 @@ ProgramSource Sweeper::sweep_program(int coefficients, const SweepMeans& means, 
       .integer("CLPV_SOURCES", coefficients)
       .integer("CLPV_EMITTING", means.emitting)
       .integer("CLPV_SOURCE_LANES", volumes_.lanes())
-      .flag("CLPV_BLOCKING", options_.blocking)
+      .flag("CLPV_BLOCKING", blocks())
       .flag("CLPV_MEDIUM", options_.medium.has_value());
   add_volume_literals(source.literals, options_.grid, options_.format,
                       form() == SweepForm::bins ? 8 : 1);
@@ -171,18 +174,18 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, std::size_t cas
   std::vector<ClpvSweepDirection> table = sweep_direction_table(parts, coarser);
   const Buffer light_table = session_.upload(table, "directions to sweep");
   for (ClpvSweepDirection& each : table) each.from_coarser *= kCellRatio * kCellRatio;
-  Directions made{parts,
-                  coarser,
-                  light_table,
-                  session_.upload(table, "directions of the furnace"),
-                  session_.upload(means.coefficients, "coefficients of the sweep's bins"),
-                  session_.upload(means.means, "means of the basis's functions"),
-                  volumes_.make(options_.blocking ? link_volumes().count() : 1,
-                                "transmittance of the sweep's links"),
-                  Kernel(session_, sweep_program(basis.size(), means, parts),
-                         form() == SweepForm::bins     ? "sweep_bin"
-                         : form() == SweepForm::groups ? "sweep_group"
-                                                       : "sweep_plane")};
+  Directions made{
+      parts,
+      coarser,
+      light_table,
+      session_.upload(table, "directions of the furnace"),
+      session_.upload(means.coefficients, "coefficients of the sweep's bins"),
+      session_.upload(means.means, "means of the basis's functions"),
+      volumes_.make(blocks() ? link_volumes().count() : 1, "transmittance of the sweep's links"),
+      Kernel(session_, sweep_program(basis.size(), means, parts),
+             form() == SweepForm::bins     ? "sweep_bin"
+             : form() == SweepForm::groups ? "sweep_group"
+                                           : "sweep_plane")};
   for (const Halo halo : {kLast, kEarlier, kWhite, kWhiteEarlier})
     made.halos[halo] = zeroed_buffer(
         session_, feeds_finer(halo, cascade) ? halo_bytes(options_, parts) : sizeof(float),
@@ -218,14 +221,15 @@ void Sweeper::enter_medium(std::size_t cascade, const ClpvGrid& grid) {
   medium_->place(cascade, grid);
 }
 
-void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded) {
-  if (occluded.exists()) {
+void Sweeper::set_blockers(std::size_t cascade, const Volume* geometry, const Buffer& occluded) {
+  transmittance_.value().set(cascades_[cascade].links);
+  if (options_.blocking) transmittance_->add(geometry->memory());
+  if (options_.points) {
     const std::size_t n = options_.grid;
     count_hidden_points_.value().set(occluded, static_cast<cl_uint>(cascade), hidden_);
     count_hidden_points_->launch({n, n, n}, {std::min(n, kRowGroup), 1, 1});
+    transmittance_->add(hidden_);
   }
-  transmittance_.value().set(geometry.memory(), hidden_, cl_int{occluded.exists()},
-                             cascades_[cascade].links);
   volumes_.launch(*transmittance_, 1);
 }
 

@@ -44,9 +44,10 @@ class Sweeper {
   Sweeper(Session& session, const Basis& basis, const Transport& transport,
           const SweepOptions& options);
 
-  /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
-  /// samples or, if there are some, from `occluded`: bits of visibility_masks() for all cascades.
-  void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
+  /// Computes the transmittance of a cascade's links. `geometry`: with SweepOptions::blocking,
+  /// (grid + 1)^3 samples. `occluded`: with SweepOptions::points, bits of visibility_masks() for
+  /// all cascades.
+  void set_blockers(std::size_t cascade, const Volume* geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
   /// `white`, `reflectors`: reflector_masks(), white and, for SweepOptions::bounces other than one,
@@ -97,6 +98,7 @@ class Sweeper {
   void launch(Halo halo, std::size_t cascade, const ClpvSweepHalo& stored, bool lit,
               bool scattered = false);
   void collect(Volume& accumulated, int first, int channels);
+  bool blocks() const { return options_.blocking || options_.points; }
   bool last_light_enters() const;
   Halo entering(Halo halo) const;
   bool feeds_finer(Halo halo, std::size_t cascade) const;

@@ -240,7 +240,7 @@ void VoxelField::list_clusters(const ClpvRegion& region) {
 }
 
 VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
-                        const VolumeFormat& format) {
+                        const VolumeFormat& format, bool only_masked) {
   VoxelKind kind{
       .what = "masks of triangles that block",
       .shape = {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)},
@@ -249,7 +249,9 @@ VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
       .kernel = "voxelize_blockers",
       .volume_program = {"voxels/blocked_areas.cl"},
       .volume_kernel = "blocked_areas"};
-  kind.program.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
+  kind.program.literals.integer("CLPV_GRID", grid)
+      .flag("CLPV_MASKED", scene.masked)
+      .flag("CLPV_ONLY_MASKED", only_masked);
   add_volume_literals(kind.volume_program.literals, grid, format);
   add_coefficient_literals(kind.volume_program.literals, 3);
   return kind;

@@ -47,9 +47,10 @@ struct VoxelKind {
 
 /// Stage `blockers` (kernels/voxels/blockers.cl; docs/method.md, 'Blockers'): geometry volumes of
 /// areas (Blocking::areas): (grid + 1)^3 samples of 3 numbers of `format`, one channel. Each is the
-/// share of a square that triangles cover. Overlapping triangles count once.
+/// share of a square that triangles cover. Overlapping triangles count once. `only_masked`: those
+/// of masked materials alone.
 VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
-                        const VolumeFormat& format);
+                        const VolumeFormat& format, bool only_masked = false);
 
 /// Stage `reflectors` (kernels/voxels/reflectors.cl; docs/method.md, 'More bounces'): reflectance
 /// of the faces of light cells: kCellFaces numbers in [0, 1] of `format` per channel, for +x, -x,
