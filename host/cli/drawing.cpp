@@ -108,18 +108,11 @@ void Drawing::add(const std::string& file, const nlohmann::json& document) const
 
 void Drawing::draw(const fs::path& output) const {
   const fs::path drawn = folder() / "drawn";
-  fs::create_directory(drawn);
-  const bool one = kind_ == "compare";  // else `output` is a folder
-  const fs::path folder_of_output = one ? output.parent_path() : output;
-  const fs::path target = one                 ? drawn / output.filename()
-                          : kind_ == "report" ? drawn / "index.html"
-                                              : drawn;
-  const Process::Result ended = run(python_, {folder().string(), target.string()});
+  const Process::Result ended = run(python_, {folder().string(), drawn.string()});
   stop_if_interrupted(fmt::format("{} was not written", output.string()));
   if (ended.code == 0) {
-    for (const fs::directory_entry& file : fs::directory_iterator(drawn))
-      write_file(folder_of_output / file.path().filename(), read_whole(file.path()),
-                 one ? OutputFile::Kind::result : OutputFile::Kind::derived);
+    write_file(output, read_whole(drawn),
+               kind_ == "report" ? OutputFile::Kind::derived : OutputFile::Kind::result);
     return;
   }
   if (ended.code == static_cast<int>(ExitCode::bad_input))

@@ -17,7 +17,7 @@ namespace clpv {
 /// One run of the package: checked before the work, run after it.
 class Drawing {
  public:
-  /// `kind`: "bench", "basis", "compare" or "report", the package's file of that name. `asked_by`:
+  /// `kind`: "compare" or "report", the package's file of that name. `asked_by`:
   /// the option or command, for messages. Takes the first interpreter that has the package's
   /// modules: CLPV_PYTHON alone where it is set; else the one found at build time, the first
   /// python3 in PATH, /usr/bin/python3. Throws Error(run_time) with the message of each if none has
@@ -28,9 +28,8 @@ class Drawing {
   const std::filesystem::path& folder() const { return folder_.path(); }
   void add(const std::string& file, const nlohmann::json& document) const;
 
-  /// Draws, and writes the files to a folder, or of "compare" to one file, each as an OutputFile.
-  /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on
-  /// failure.
+  /// Draws into the file `output`. Throws Error(bad_input) for a malformed document,
+  /// Error(run_time) with Python's message on failure.
   void draw(const std::filesystem::path& output) const;
 
  private:

@@ -301,7 +301,7 @@ void run(const Options& options, const Shared& shared) {
                                    version(), session.device().name, session.device().platform,
                                    session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
-  drawing.draw(options.folder);
+  drawing.draw(page_of(options));
   print_data("{}\n", page_of(options).string());
 }
 

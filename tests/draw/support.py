@@ -24,12 +24,3 @@ def variant(options, **fields):
         "options": options, "rejected": 0, "nrmse": 0.45, "worst_nrmse": 0.5, "energy_ratio": 1.0,
         "frame_ms": 170.0, **fields
     }
-
-
-def bench_document(*rows):
-    return {
-        "context": {
-            "device": "a device", "platform": "a platform", "driver": "1", "git_describe": "abc",
-            "clpv_version": "1.2.3"
-        }, "benchmarks": list(rows)
-    }
