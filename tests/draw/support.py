@@ -4,7 +4,6 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PACKAGE = ROOT / "python/clpv/draw"
 sys.path.insert(0, str(ROOT / "python"))
 
 
