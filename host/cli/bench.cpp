@@ -41,18 +41,12 @@ std::string subject_of(const bench::SuiteOptions& options) {
                      options.scene->camera(options.camera).name);
 }
 
-nlohmann::json report_of(const Options& options, const Session& session,
-                         const std::vector<bench::Row>& rows) {
-  nlohmann::json context = bench::context_json(session);
-  context["scene"] = subject_of(options.bench.suite);
-  return bench::report_json(context, rows);
-}
-
 std::string as_text(const Options& options, std::string_view format, const bench::Suite& suite,
                     const Session& session, const std::vector<bench::Row>& rows) {
-  if (format == "json") return report_of(options, session, rows).dump(2) + "\n";
+  const std::string scene = subject_of(options.bench.suite);
+  if (format == "json") return bench::report_json(session, scene, rows).dump(2) + "\n";
   if (format == "github-action") return bench::report_github_action(rows);
-  return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
+  return fmt::format("scene: {}\n", scene) +
          (suite.table ? suite.table(rows) : bench::report_table(rows));
 }
 

@@ -34,7 +34,3 @@ class Charts(unittest.TestCase):
             documents.checked(
                 {"benchmarks": [row("a", "b"), row("a", "b", median="4")]}, "x.json", "benchmarks",
                 bench.ROW)
-
-
-if __name__ == "__main__":
-    unittest.main()

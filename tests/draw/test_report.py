@@ -121,7 +121,3 @@ class Page(unittest.TestCase):
 
     def test_the_front_has_what_none_beats(self):
         self.assertEqual(report.front_of([(4, 30), (2, 60), (1, 50), (5, 30)]), [(1, 50), (4, 30)])
-
-
-if __name__ == "__main__":
-    unittest.main()

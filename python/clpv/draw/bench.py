@@ -7,10 +7,6 @@ ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout
        "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}
 
 
-def of_suite(rows, suite):
-    return [row for row in rows if row["suite"] == suite and row["status"] == "ok"]
-
-
 def distinct(values):
     return list(dict.fromkeys(values))
 
@@ -26,7 +22,7 @@ def work_of(row):
 
 
 def layouts(rows):
-    rows = of_suite(rows, "layouts")
+    rows = [row for row in rows if row["suite"] == "layouts" and row["status"] == "ok"]
     groups = distinct(map(work_of, rows))
     if not groups:
         return None
