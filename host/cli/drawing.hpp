@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,10 @@ class Drawing {
   /// them.
   Drawing(std::string kind, std::string asked_by);
 
-  /// Temporary folder for the input; removed by the destructor.
-  const std::filesystem::path& folder() const { return folder_.path(); }
+  /// Adds a file of the input, of which the destructor leaves nothing.
   void add(const std::string& file, const nlohmann::json& document) const;
+  /// Adds an NPY of height x width x channels.
+  void add(const std::string& file, std::span<const float> values, int width, int height) const;
 
   /// Draws into the file `output`. Throws Error(bad_input) for a malformed document,
   /// Error(run_time) with Python's message on failure.
@@ -38,7 +40,7 @@ class Drawing {
 
   std::string kind_, asked_by_;
   std::filesystem::path python_;
-  ScratchFolder folder_;
+  ScratchFolder scratch_;  ///< the input
 };
 
 // Images that commands read.
