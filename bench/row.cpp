@@ -39,14 +39,6 @@ nlohmann::json problem_json(const Problem& problem) {
       {"grid", o.grid},      {"iterations", o.iterations},        {"filtered", problem.filtered}};
 }
 
-/// The keys of problem_json with null values, for a row without volumes.
-nlohmann::json no_problem_json() {
-  nlohmann::json json = problem_json({});
-  for (auto& value : json) value = nullptr;
-  json["occlusion"] = false;
-  return json;
-}
-
 }  // namespace
 
 RenderOptions timed_options() {
@@ -78,11 +70,10 @@ nlohmann::json to_json(const Row& row, int index) {
                          {"cpu_time", row.cpu_ms},
                          {"time_unit", "ms"}};
   json.update({{"suite", row.suite},
-               {"coefficients",
-                row.coefficients > 0 ? nlohmann::json(row.coefficients) : nlohmann::json(nullptr)},
+               {"coefficients", row.coefficients},
                {"preset", text_or_null(row.preset)},
                {"recompute", text_or_null(row.recompute)}});
-  json.update(row.problem ? problem_json(*row.problem) : no_problem_json());
+  json.update(problem_json(row.problem));
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
                {"timer", row.from_events ? "event" : "wall"},
@@ -93,7 +84,7 @@ nlohmann::json to_json(const Row& row, int index) {
                {"device_bytes", row.device_bytes},
                {"host_bytes", row.host_bytes}});
   TimeRecord record = time_record(row.stage, row.samples_ms);
-  if (row.problem) record.cascade = row.problem->cascade;
+  record.cascade = row.problem.cascade;
   json.update(nlohmann::json(record));
   json["p95"] = row.times.p95;
   json.update({{"launches", row.host.launches},
@@ -132,9 +123,7 @@ std::string now() {
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
-}  // namespace
-
-nlohmann::json context_json(const Session& session) {
+nlohmann::json context_json(const Session& session, const std::string& scene) {
   const Device& device = session.device();
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
@@ -156,14 +145,18 @@ nlohmann::json context_json(const Session& session) {
           {"driver", device.driver},
           {"compute_units", device.compute_units},
           {"build_options", ProgramSource{}.options},
-          {"kernel_hash", kernel_hash()}};
+          {"kernel_hash", kernel_hash()},
+          {"scene", scene}};
 }
 
-nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows) {
+}  // namespace
+
+nlohmann::json report_json(const Session& session, const std::string& scene,
+                           const std::vector<Row>& rows) {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 0; i < rows.size(); ++i)
     list.push_back(to_json(rows[i], static_cast<int>(i)));
-  return {{"context", context}, {"benchmarks", list}};
+  return {{"context", context_json(session, scene)}, {"benchmarks", list}};
 }
 
 std::string report_github_action(const std::vector<Row>& rows) {

@@ -40,8 +40,8 @@ std::string lobes_of(const RenderOptions& options);
 
 struct Row {
   std::string suite, stage, name;
-  int coefficients = 0;            ///< functions of the basis
-  std::optional<Problem> problem;  ///< of the stage's volumes
+  int coefficients = 0;  ///< functions of the basis
+  Problem problem;       ///< of the stage's volumes
   Status status = Status::ok;
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
   std::string preset;  ///< suite frame
@@ -91,13 +91,11 @@ struct Case {
 
 // Results of a benchmark as text: JSON with Google Benchmark's keys, or a table.
 
-/// Context of a run: Google Benchmark's keys (date, host_name, num_cpus, load_avg ...) and clpv's
-/// (schema, clpv_version, git_describe, host_cpu, platform, device, driver, compute_units,
-/// build_options, kernel_hash).
-nlohmann::json context_json(const Session& session);
-
-/// {"context": ..., "benchmarks": [row, ...]}.
-nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows);
+/// {"context": ..., "benchmarks": [row, ...]}. Context: Google Benchmark's keys (date, host_name,
+/// num_cpus, load_avg ...) and clpv's (schema, clpv_version, git_describe, host_cpu, platform,
+/// device, driver, compute_units, build_options, kernel_hash), and the scene.
+nlohmann::json report_json(const Session& session, const std::string& scene,
+                           const std::vector<Row>& rows);
 
 /// [{"name", "unit": "ms", "value", "range"}, ...]: medians and MADs of the rows of status ok, in
 /// the form that GitHub's benchmark actions read (smaller is better).

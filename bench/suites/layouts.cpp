@@ -41,9 +41,9 @@ Group cases(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
 /// The row of the same stage, basis and occlusion in half-float images; null if there is none.
 const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
   for (const Row& other : rows) {
-    const RenderOptions &a = row.problem->options, &b = other.problem->options;
+    const RenderOptions &a = row.problem.options, &b = other.problem.options;
     if (other.status == Status::ok && other.stage == row.stage && a.basis == b.basis &&
-        a.blocked() == b.blocked() && b.format() == kPaperFormat && other.problem->filtered)
+        a.blocked() == b.blocked() && b.format() == kPaperFormat && other.problem.filtered)
       return &other;
   }
   return nullptr;

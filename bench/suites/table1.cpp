@@ -59,8 +59,8 @@ using Section = std::vector<const Row*>;
 Times times_of(const Section& section, Pass pass, std::optional<int> cascade, bool shadows,
                const std::string& basis) {
   for (const Row* row : section) {
-    if (row->stage != name_of(pass) || row->problem->cascade != cascade ||
-        row->problem->options.basis != basis)
+    if (row->stage != name_of(pass) || row->problem.cascade != cascade ||
+        row->problem.options.basis != basis)
       continue;
     const bool timed = row->status == Status::ok;
     return {row->published_ms, timed ? std::optional(row->times.median) : std::nullopt,
@@ -141,9 +141,9 @@ std::string table1_table(const std::vector<Row>& rows) {
   int cascades = 0;
   std::map<std::pair<Settings, bool>, Section> sections;  // by settings, and lack of shadows
   for (const Row& row : rows) {
-    const RenderOptions& o = row.problem->options;
+    const RenderOptions& o = row.problem.options;
     if (std::count(bases.begin(), bases.end(), o.basis) == 0) bases.push_back(o.basis);
-    cascades = std::max(cascades, row.problem->cascade.value_or(-1) + 1);
+    cascades = std::max(cascades, row.problem.cascade.value_or(-1) + 1);
     sections[{o.lobe_time == LobeTime::kernel ? Settings::published : Settings::constant_lobes,
               !o.blocked()}]
         .push_back(&row);

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "basis/basis.hpp"
 #include "bench/row.hpp"
 #include "bench/runner.hpp"
 #include "cli/commands.hpp"
-#include "cli/drawing.hpp"
 #include "cli/options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -24,7 +21,7 @@ namespace bench_command {
 constexpr const char* kDefaultScene = "scenes/atrium.json";
 
 struct Options {
-  std::string suite, scene = kDefaultScene, model, filter, format, output, plot, log;
+  std::string suite, scene = kDefaultScene, model, filter, format, output, log;
   SceneChanges changes;
   bench::BenchOptions bench;
 };
@@ -44,28 +41,13 @@ std::string subject_of(const bench::SuiteOptions& options) {
                      options.scene->camera(options.camera).name);
 }
 
-nlohmann::json report_of(const Options& options, const Session& session,
-                         const std::vector<bench::Row>& rows) {
-  nlohmann::json context = bench::context_json(session);
-  context["scene"] = subject_of(options.bench.suite);
-  return bench::report_json(context, rows);
-}
-
 std::string as_text(const Options& options, std::string_view format, const bench::Suite& suite,
                     const Session& session, const std::vector<bench::Row>& rows) {
-  if (format == "json") return report_of(options, session, rows).dump(2) + "\n";
+  const std::string scene = subject_of(options.bench.suite);
+  if (format == "json") return bench::report_json(session, scene, rows).dump(2) + "\n";
   if (format == "github-action") return bench::report_github_action(rows);
-  return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
+  return fmt::format("scene: {}\n", scene) +
          (suite.table ? suite.table(rows) : bench::report_table(rows));
-}
-
-/// Returns the files of the options; those of --plot as python/clpv/draw/bench.py names them.
-std::vector<NamedFile> outputs_of(const Options& options) {
-  std::vector<NamedFile> outputs{{"--output", options.output}, {"--log", options.log}};
-  if (options.plot.empty()) return outputs;
-  for (const char* chart : {"layouts.svg", "layouts.png"})
-    outputs.push_back({"--plot", std::filesystem::path(options.plot) / chart});
-  return outputs;
 }
 
 /// Loads the scene of --scene into the options.
@@ -97,20 +79,12 @@ void run(Options options, const Shared& shared) {
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
-  std::optional<const Drawing> plot;  // before the benchmark, to report whether charts can be drawn
-  std::optional<const OutputFolder> charts;
-  if (!options.plot.empty()) {
-    if (options.suite != "layouts")
-      throw Error(ExitCode::usage, "--plot: suite {} has no chart; allowed: layouts",
-                  options.suite);
-    plot.emplace("bench", "--plot");
-    charts.emplace("--plot", options.plot);
-  }
-  check_outputs(outputs_of(options));
+  const std::vector<NamedFile> outputs{{"--output", options.output}, {"--log", options.log}};
+  check_outputs(outputs);
   const bench::Suite& suite =
       *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   load_suite_scene(options);
-  check_outputs(outputs_of(options));
+  check_outputs(outputs);
   const Device device = choose_device(shared.device);
   // Cached programs have no build time.
   Session session(device, ProgramCache::of_user(device));
@@ -126,10 +100,6 @@ void run(Options options, const Shared& shared) {
   else
     print_json(text(options.format));
   flush_data();
-  if (plot) {
-    plot->add("bench.json", report_of(options, session, rows));
-    plot->draw(options.plot);
-  }
   session.programs().store();
   require_right_results(rows);
 }
@@ -165,8 +135,6 @@ void add_bench(CLI::App& app, Shared& shared) {
   add(*command, "--log", "FILE.jsonl", options->log,
       "log of row starts and ends, one JSON line each; after a crash its last line names the row");
   add(*command, "-o,--output", "FILE.json", options->output, "output file for the results, .json");
-  add(*command, "--plot", "DIR", options->plot,
-      "output folder for SVG and PNG charts of suite layouts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

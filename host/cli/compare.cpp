@@ -3,7 +3,6 @@
 #include "image/compare.hpp"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
@@ -11,7 +10,6 @@
 #include "cli/options.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
-#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
@@ -49,11 +47,8 @@ void check_output(const CompareOptions& options) {
 void write_sheet(const CompareOptions& options, const Drawing& drawing, const Image& a,
                  const Image& b, const Comparison& comparison) {
   const float exposure = options.exposure ? *options.exposure : automatic_exposure(b);
-  const std::array<std::size_t, 2> size{static_cast<std::size_t>(a.height),
-                                        static_cast<std::size_t>(a.width)};
   const auto add = [&](const char* file, const Image& image) {
-    write_npy(drawing.folder() / file, image.pixels,
-              std::array<std::size_t, 3>{size[0], size[1], 3});
+    drawing.add(file, image.pixels, image.width, image.height);
   };
   const auto add_shown = [&](const char* file, const Image& image) {
     Image black = image;

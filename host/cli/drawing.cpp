@@ -2,11 +2,13 @@
 #include "cli/drawing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "image/image_io.hpp"
+#include "support/array_files.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
@@ -60,11 +62,6 @@ std::vector<fs::path> interpreters() {
   return all;
 }
 
-std::string read_whole(const fs::path& file) {
-  if (auto bytes = file_bytes(file, std::numeric_limits<std::uintmax_t>::max())) return *bytes;
-  throw Error(ExitCode::run_time, "{}: cannot be read", file.string());
-}
-
 /// Keeps matplotlib's list of fonts in clpv's cache, and its empty folder of settings out of HOME.
 /// Without a cache they are in the scratch folder.
 void choose_matplotlib_folder(const fs::path& scratch) {
@@ -83,7 +80,7 @@ std::string first_line(const std::string& text) {
 
 Drawing::Drawing(std::string kind, std::string asked_by)
     : kind_(std::move(kind)), asked_by_(std::move(asked_by)) {
-  choose_matplotlib_folder(folder());
+  choose_matplotlib_folder(scratch_.path());
   std::string tried;
   for (const fs::path& python : interpreters()) {
     const Process::Result ended = run(python, {});
@@ -103,25 +100,24 @@ Drawing::Drawing(std::string kind, std::string asked_by)
 }
 
 void Drawing::add(const std::string& file, const nlohmann::json& document) const {
-  write_file(folder() / file, document.dump(), OutputFile::Kind::entry);
+  write_file(scratch_.path() / file, document.dump(), OutputFile::Kind::entry);
+}
+
+void Drawing::add(const std::string& file, std::span<const float> values, int width,
+                  int height) const {
+  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+  write_npy(scratch_.path() / file, values,
+            std::array{rows, columns, values.size() / (rows * columns)});
 }
 
 void Drawing::draw(const fs::path& output) const {
-  const fs::path drawn = folder() / "drawn";
-  fs::create_directory(drawn);
-  const bool one = kind_ == "compare";  // else `output` is a folder
-  const fs::path folder_of_output = one ? output.parent_path() : output;
-  const fs::path target = one                 ? drawn / output.filename()
-                          : kind_ == "report" ? drawn / "index.html"
-                                              : drawn;
-  const Process::Result ended = run(python_, {folder().string(), target.string()});
+  const fs::path drawn = scratch_.path() / "drawn";
+  const Process::Result ended = run(python_, {scratch_.path().string(), drawn.string()});
   stop_if_interrupted(fmt::format("{} was not written", output.string()));
-  if (ended.code == 0) {
-    for (const fs::directory_entry& file : fs::directory_iterator(drawn))
-      write_file(folder_of_output / file.path().filename(), read_whole(file.path()),
-                 one ? OutputFile::Kind::result : OutputFile::Kind::derived);
-    return;
-  }
+  const auto bytes = file_bytes(drawn, std::numeric_limits<std::uintmax_t>::max());
+  if (ended.code == 0 && bytes)
+    return write_file(output, *bytes,
+                      kind_ == "report" ? OutputFile::Kind::derived : OutputFile::Kind::result);
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.output);
   throw Error(ExitCode::run_time, "{}: {} -m clpv.draw ended with {}: {}", asked_by_,

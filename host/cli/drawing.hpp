@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,20 +18,20 @@ namespace clpv {
 /// One run of the package: checked before the work, run after it.
 class Drawing {
  public:
-  /// `kind`: "bench", "basis", "compare" or "report", the package's file of that name. `asked_by`:
+  /// `kind`: "compare" or "report", the package's file of that name. `asked_by`:
   /// the option or command, for messages. Takes the first interpreter that has the package's
   /// modules: CLPV_PYTHON alone where it is set; else the one found at build time, the first
   /// python3 in PATH, /usr/bin/python3. Throws Error(run_time) with the message of each if none has
   /// them.
   Drawing(std::string kind, std::string asked_by);
 
-  /// Temporary folder for the input; removed by the destructor.
-  const std::filesystem::path& folder() const { return folder_.path(); }
+  /// Adds a file of the input, of which the destructor leaves nothing.
   void add(const std::string& file, const nlohmann::json& document) const;
+  /// Adds an NPY of height x width x channels.
+  void add(const std::string& file, std::span<const float> values, int width, int height) const;
 
-  /// Draws, and writes the files to a folder, or of "compare" to one file, each as an OutputFile.
-  /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on
-  /// failure.
+  /// Draws into the file `output`. Throws Error(bad_input) for a malformed document,
+  /// Error(run_time) with Python's message on failure.
   void draw(const std::filesystem::path& output) const;
 
  private:
@@ -39,7 +40,7 @@ class Drawing {
 
   std::string kind_, asked_by_;
   std::filesystem::path python_;
-  ScratchFolder folder_;
+  ScratchFolder scratch_;  ///< the input
 };
 
 // Images that commands read.

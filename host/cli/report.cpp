@@ -23,7 +23,6 @@
 #include "image/tone_map.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
@@ -135,11 +134,8 @@ struct PageView {
 /// Writes values of each pixel. Returns the name of the file.
 std::string add_values(const Drawing& drawing, const PageView& view, const char* kind,
                        std::span<const float> values) {
-  const std::size_t height = static_cast<std::size_t>(view.truth.height),
-                    width = static_cast<std::size_t>(view.truth.width);
   const std::string file = fmt::format("{}-{}-{}.npy", view.name, view.images.size(), kind);
-  write_npy(drawing.folder() / file, values,
-            std::array{height, width, values.size() / (height * width)});
+  drawing.add(file, values, view.truth.width, view.truth.height);
   return file;
 }
 
@@ -301,7 +297,7 @@ void run(const Options& options, const Shared& shared) {
                                    version(), session.device().name, session.device().platform,
                                    session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
-  drawing.draw(options.folder);
+  drawing.draw(page_of(options));
   print_data("{}\n", page_of(options).string());
 }
 

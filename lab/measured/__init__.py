@@ -35,17 +35,6 @@ def run_clpv(*arguments, check=True):
                           check=check, cwd=ROOT).stdout
 
 
-def sheet(path, title, columns, size, tiles, dpi=100, **options):
-    """Draws tiles (pixels, caption), row by row, under a title. `size`: of a tile [inches]. A tile
-    without pixels stays empty."""
-    from clpv.draw import style
-    made = style.Sheet([title], columns, len(tiles), size, above=True)
-    for i, (pixels, caption) in enumerate(tiles):
-        if pixels is not None:
-            made.tile(i, caption).imshow(pixels, **options)
-    made.save(path, dpi)
-
-
 def described():
     """Commit of this tree, as cmake/git_describe.cmake finds it: `unknown` without git, and in a
     source archive, which may lie in another repository."""

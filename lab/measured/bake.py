@@ -7,10 +7,7 @@ import pathlib
 import sys
 import tempfile
 
-from . import ROOT, cells, run_clpv
-
-sys.path.insert(0, str(ROOT / "scenes"))
-import generate_leaks as scenes  # noqa: E402
+from . import cells, leak_scenes as scenes, run_clpv
 
 POINTS = 1000
 PATHS = "--spp=512"

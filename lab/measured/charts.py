@@ -10,10 +10,11 @@ import sys
 import numpy
 from matplotlib import pyplot
 
-from . import CLPV, RESULTS, ROOT, bake, native, output, sheet
+from . import CLPV, RESULTS, ROOT, bake, native, output
 
 clpv = native()
 from clpv.draw import style  # noqa: E402
+from .sheets import sheet  # noqa: E402
 
 sys.path.insert(0, str(ROOT / "examples"))
 import probes  # noqa: E402  pylint: disable=wrong-import-position

@@ -102,13 +102,11 @@ class Demo:
         return file
 
     def shown(self, file, layer):
-        """Rows of sRGB bytes at the size of the demo."""
+        """Rows of sRGB bytes."""
         width, height, planes = read_exr(file)
-        pixels = [bytes(pixel) for pixel in
-                  zip(*(map(displayed, planes[f"{layer}.{colour}"]) for colour in "RGB"))]
-        columns, rows = self.size
-        return [b"".join(pixels[y * height // rows * width + x * width // columns]
-                         for x in range(columns)) for y in range(rows)]
+        pixels = b"".join(map(bytes, zip(*(map(displayed, planes[f"{layer}.{colour}"])
+                                           for colour in "RGB"))))
+        return [pixels[3 * width * y:3 * width * (y + 1)] for y in range(height)]
 
     def make(self):
         """Returns the pictures from left to right, and the error of a frame with all bounces."""

@@ -4,7 +4,7 @@ numbers.
 
 figure1, figure4   Sponza, camera `curtains`, by `--preset paper` and by the defaults with the
                    paper's two bases
-figure2, 3, 6      by `clpv basis --figures`, with both kinds of lobes
+figure2, 3, 6      by basis_figures.py, with both kinds of lobes
 figure5            the arcade and the wall behind it, sun along the nave, as figure1
 answer             indirect light of both bases by either preset, beside path tracing
 srbf14             srbf14 with rotated lobes and sampled transport, and with exact ones; camera
@@ -16,12 +16,12 @@ import functools
 import itertools
 import json
 import pathlib
-import tempfile
 
 import numpy as np
 
-from . import cells, claims, native, run_clpv, sheet
+from . import basis_figures, cells, claims, native
 from .rows import options_of
+from .sheets import sheet
 
 clpv = native()
 
@@ -30,7 +30,6 @@ LUMINANCE = (0.2126, 0.7152, 0.0722)
 PRESETS = ("paper", "best")
 BASES = ("sh2", "srbf8v2")
 NOISE = 0.1  # noise of the path-traced picture
-LOBES = ("rotate", "exact")
 SIZES = (12.5, 50)  # m, edge of the smallest cascade
 STEPS = (8, 24)
 AMPLIFY = 15  # factor of difference images, as in the paper and in captions of figures.json
@@ -115,23 +114,11 @@ def brightness(frames):
     return rows
 
 
-def basis_figures(out):
-    """Names of Figures 2, 3 and 6 in the folder."""
-    names = []
-    for lobe in LOBES:
-        with tempfile.TemporaryDirectory() as folder:
-            run_clpv("basis", "--lobe", lobe, "--figures", folder)
-            for file in sorted(pathlib.Path(folder).glob("*.png")):
-                names.append(f"lobes-{lobe}/{file.name}")
-                out.write(names[-1], file.read_bytes())
-    return names
-
-
 def paper(arguments):
     """Files of Figures 1, 4 and 5, and of 2, 3 and 6, and brightness. Without a model Figures 2, 3
     and 6 only."""
     out = arguments.out
-    lobe_files = basis_figures(out)
+    lobe_files = [name for kind in ("rotate", "exact") for name in basis_figures.draw(out, kind)]
     if not arguments.model:
         return {"sheets": [], "lobes": lobe_files, "rows": []}
     nave = claims.Views(arguments)

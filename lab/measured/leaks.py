@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measures how much light leaks into the rooms of scenes/generate_leaks.py.
+"""Measures how much light leaks into the rooms of leak_scenes.py.
 
     scripts/leaks [--shapes sheet,wall1] [--lights sun,sky,lamp] [--bounces 1,all] [--offsets 8]
                   [-o FILE.json] [--OPTION=VALUE...]
@@ -14,16 +14,12 @@ import argparse
 import itertools
 import math
 import pathlib
-import sys
 import tempfile
 
 import numpy
 
-from . import ROOT, json_lines, native, output, rows as known, tables
+from . import json_lines, leak_scenes as scenes, native, output, rows as known, tables
 from .cells import found
-
-sys.path.insert(0, str(ROOT / "scenes"))
-import generate_leaks as scenes  # noqa: E402  pylint: disable=wrong-import-position
 
 clpv = native()
 POINTS = 5  # along each edge of a face

@@ -7,8 +7,9 @@ import math
 
 import numpy as np
 
-from . import native, sheet
+from . import native
 from .rows import ROOMS
+from .sheets import sheet
 
 clpv = native()
 

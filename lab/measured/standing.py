@@ -21,11 +21,12 @@ import tempfile
 
 import numpy
 
-from . import LAB, ROOT, charts, sheet
+from . import LAB, ROOT, charts
 from .cells import found
 from .charts import clpv
 from .measure import FRAME_COUNT, measured_with, run, scenes_of, write
 from .rows import DATA, SHARED, VIEWS
+from .sheets import sheet
 
 FOLDER = ROOT / "lab/results/quality"
 STANDING_COUNT = 5

@@ -85,10 +85,6 @@ def lights_of(scene, camera):
     return [camera["light"]] if "light" in camera else [light["name"] for light in scene["lights"]]
 
 
-def sha256(file):
-    return hashlib.sha256(file.read_bytes()).hexdigest()
-
-
 def ground_truths(name, cameras, model, cache):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
     return run("quality", f"scenes/{FILES.get(name, name)}.json",
@@ -138,7 +134,8 @@ def add_scene(folder, name, sponza, cache):
             "paths": traced["spp"], "exposure": scene.get("exposure",
                                                           0), "width": SIZE[0], "height": SIZE[1]
         })
-    hashes = {file.name: sha256(file) for file in model_files(model)}
+    hashes = {file.name: hashlib.sha256(file.read_bytes()).hexdigest()
+              for file in model_files(model)}
     return {
         "model": f"models/{model.name}" if ours else model.name, "included": ours, "sha256": hashes,
         "metres_per_unit": scene.get("metres_per_unit", 1), "time": TIMES.get(name, 0),

@@ -3,9 +3,7 @@
 import pathlib
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PACKAGE = ROOT / "python/clpv/draw"
-sys.path.insert(0, str(ROOT / "python"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 
 
 def row(suite, stage, **fields):
@@ -23,13 +21,4 @@ def variant(options, **fields):
     return {
         "options": options, "rejected": 0, "nrmse": 0.45, "worst_nrmse": 0.5, "energy_ratio": 1.0,
         "frame_ms": 170.0, **fields
-    }
-
-
-def bench_document(*rows):
-    return {
-        "context": {
-            "device": "a device", "platform": "a platform", "driver": "1", "git_describe": "abc",
-            "clpv_version": "1.2.3"
-        }, "benchmarks": list(rows)
     }

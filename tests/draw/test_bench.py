@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Charts of benchmarks: they go by the fields of rows."""
-import json
-import pathlib
-import tempfile
 import unittest
 from unittest import mock
 
-from support import bench_document, row
+from support import row
 from clpv.draw import __main__ as draw, bench, documents
 from matplotlib import pyplot
 
@@ -31,26 +28,9 @@ class Charts(unittest.TestCase):
         failed = row("layouts", "gather", status="unsupported", median=0, min=0, p95=0)
         self.assertIsNone(bench.layouts([failed]))
 
-    def test_files_are_those_the_rows_allow_and_the_same_twice(self):
-        rows = [row("layouts", "propagate"), row("layouts", "propagate", occlusion=True)]
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            source, one, two = folder, folder / "one", folder / "two"
-            (source / "bench.json").write_text(json.dumps(bench_document(*rows)))
-            for target in (one, two):
-                target.mkdir()
-                bench.draw(source, target)
-            self.assertEqual(sorted(p.name for p in one.iterdir()), ["layouts.png", "layouts.svg"])
-            for made in one.iterdir():
-                self.assertEqual(made.read_bytes(), (two / made.name).read_bytes(), made.name)
-
     def test_a_document_of_another_shape_is_reported_with_its_place(self):
         with self.assertRaisesRegex(documents.BadDocument,
                                     r"x.json: /benchmarks/1/median is \"4\"; allowed: a number"):
             documents.checked(
                 {"benchmarks": [row("a", "b"), row("a", "b", median="4")]}, "x.json", "benchmarks",
                 bench.ROW)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -89,7 +89,3 @@ class Tree(InFolder):
                       for member in MEMBER.findall(body) if member != "unused"}
         self.assertGreater(len(found), 90)
         self.assertEqual(found, listed)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -123,7 +123,6 @@ TEST(HostileCommandLines, OfCommands) {
                    {"bench everything", {"SUITE: found 'everything', allowed: table1,"}},
                    {"bench bases --filter (", {"--filter", "regular expression"}},
                    {"compare a.json b.json --fail-above 0.5", {"--fail-above"}},
-                   {"bench bases --plot @/out", {"--plot", "allowed: layouts"}},
                    {"check --stage cook", {"--stage", "gather"}},
                    {"basis sh2 --axis up", {"--axis", "'up'"}},
                    {film + "--frames 2", {"--fps"}},
@@ -167,9 +166,7 @@ TEST(HostileSurroundings, Outputs) {
         "bake " + kCornell + " -o @/none/a.npz"})
     rejected(command, {"none/a.", "no folder"});
   for (const std::string& command : {"sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
-                                     std::string("report @/file/there " + kCornell),
-                                     std::string("basis sh2 --figures @/file/there"),
-                                     std::string("bench layouts --plot @/file/there")})
+                                     std::string("report @/file/there " + kCornell)})
     rejected(command, {"file"});
 }
 

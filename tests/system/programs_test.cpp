@@ -8,7 +8,6 @@
 
 #include <filesystem>
 
-#include "image/image_io.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
@@ -59,8 +58,7 @@ class Traps {
 TEST(Programs, NothingOfTheCurrentFolderRuns) {
   const Traps traps;
   for (const std::string& command :
-       {std::string("basis sh2 --figures figures"),
-        "quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --cache cache -o q.json",
+       {"quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --cache cache -o q.json",
         std::string("report page --quality q.json"),
         "sequence " + kTiny + kSmallSteps + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
     const test::Outcome outcome = traps.run(command);
@@ -86,11 +84,12 @@ TEST(Programs, APythonThatLacksModulesIsPassedOver) {
   const test::TemporaryFolder folder;
   folder.write("bin/python3", "#!/bin/sh\necho No module named numpy >&2\nexit 1\n");
   ::chmod((folder / "bin/python3").c_str(), 0755);
-  const std::string figures = CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string();
-  const test::Outcome passed = test::run("PATH=" + (folder / "bin").string() + ":$PATH " + figures);
+  const std::string report = CLPV_PROGRAM " report " + (folder / "page").string() + " --quality " +
+                             folder.write("q.json", R"({"variants": []})").string();
+  const test::Outcome passed = test::run("PATH=" + (folder / "bin").string() + ":$PATH " + report);
   EXPECT_EQ(passed.exit_code, 0) << passed.err;
   const test::Outcome named =
-      test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + figures);
+      test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + report);
   EXPECT_EQ(named.exit_code, 1);
   EXPECT_THAT(named.err,
               AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
@@ -134,9 +133,7 @@ TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
   }
 }
 
-// Commands that draw with python/clpv/draw: `clpv report`, `clpv basis --figures` and `clpv bench
-// --plot`, and their errors where Python or a module is missing. tests/draw has the charts and the
-// page.
+// `clpv report` and its errors. tests/draw has the charts and the page.
 
 using test::must_run_here;
 using test::run_here;
@@ -147,15 +144,6 @@ class Drawing : public ::testing::Test {
 
   test::TemporaryFolder folder_;
 };
-
-TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
-  const std::string to = file("new/folder");
-  const test::Outcome outcome = must_run_here("basis srbf8v2 --lobe rotate --figures " + to);
-  for (const char* name : {"figure2.png", "figure3.png", "figure6.png"}) {
-    EXPECT_THAT(outcome.out, HasSubstr(name));
-    EXPECT_GT(read_image(to + "/" + name).width, 100) << name;
-  }
-}
 
 /// A box under a sky, which the published scheme does not have.
 class SkyReport : public Drawing {

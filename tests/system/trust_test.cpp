@@ -211,7 +211,7 @@ struct Inputs : ::testing::Test {
     model.write(folder);
     write_exr(folder / "my sky.exr", make_image(2, 1, {"R", "G", "B"}));
     folder.write("my.json", R"({"model": "model.gltf", "sky": {"map": "my%20sky.exr"}})");
-    for (const char* name : {"centres.json", "stability.json", "figure3.png"})
+    for (const char* name : {"centres.json", "stability.json"})
       folder.write(name, R"({"centres": [[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]]})");
     folder.write("points.csv", "0,0,0,0,1,0\n");
     folder.write("index.html", R"({"variants": []})");
@@ -240,7 +240,6 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
       "quality" + scene + cached + " -o my.json",
       "quality" + scene + cached + " --vary centres=stability.json,centres.json -o centres.json",
       "bench bases --scene my.json -o my.json",
-      "basis --centres figure3.png --figures .",
       "report . --quality index.html"};
   for (const std::string& command : commands) {
     const test::Outcome outcome = run_here(command, folder.path());

@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Verdicts from outcomes, tolerances, and the rows of scripts/reproduce that need no model."""
+"""Verdicts from outcomes, tolerances, and the rows and figures of scripts/reproduce that need no
+model."""
 import json
+import math
 import os
 import pathlib
 import subprocess
 import sys
 
+import numpy
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "lab"))
-pytest.importorskip("jinja2",
-                    reason="all of it: Jinja2 is not installed (Debian: apt install python3-jinja2)")
-from measured import reproduce, verdicts  # noqa: E402
+for module in "jinja2", "matplotlib":
+    pytest.importorskip(module, reason=f"all of it: no {module} (Debian: apt install python3-{module})")
+from measured import basis_figures, output, reproduce, sphere, verdicts  # noqa: E402
+from measured.sheets import style  # noqa: E402
+
+pyplot = style.pyplot
 
 
 @pytest.mark.parametrize(
@@ -61,3 +67,66 @@ def test_lobes_and_tables_have_the_expected_values(tmp_path):
 def test_parts_that_need_a_model_are_rejected_without_one():
     refused = reproduce_parts("--part=light")
     assert refused.returncode == 2 and "--part light: allowed: lobes, tables" in refused.stderr
+
+
+def test_figures_of_bases_are_drawn(tmp_path):
+    names = basis_figures.draw(output.Folder(tmp_path, "test"), "rotate", ["srbf8v2"])
+    assert names == [f"lobes-rotate/figure{number}.png" for number in (2, 3, 6)]
+    assert all(pyplot.imread(tmp_path / name).shape[1] > 100 for name in names)
+
+
+SIZE = 200  # pixels of a spherical plot, whose surfaces have known outlines
+GRID = sphere.directions((91, 180))
+
+
+def image_of(values, **options):
+    figure = pyplot.figure(figsize=(2, 2), dpi=SIZE / 2)
+    axis = figure.add_axes((0, 0, 1, 1))
+    axis.axis("off")
+    sphere.plot(axis, values, **options)
+    figure.canvas.draw()
+    pixels = numpy.asarray(figure.canvas.buffer_rgba())[..., :3] / 255.0
+    pyplot.close(figure)
+    return pixels
+
+
+def blue(image):
+    return image[..., 2] > image[..., 0] + 0.1
+
+
+def red(image):
+    return image[..., 0] > image[..., 2] + 0.1
+
+
+def box(mask):
+    """left, right, top, bottom"""
+    rows, columns = numpy.nonzero(mask)
+    return columns.min(), columns.max(), rows.min(), rows.max()
+
+
+def test_a_constant_is_a_disc_of_its_radius():
+    image = image_of(numpy.full(GRID.shape[:2], 0.8), extent=1)
+    left, right, top, bottom = box(blue(image))
+    assert blue(image).sum() == pytest.approx(math.pi * 80**2, rel=0.03)
+    assert (right - left, bottom - top) == pytest.approx((160, 160), abs=2)
+    assert red(image).sum() == 0
+
+
+def test_the_clamped_cosine_is_a_sphere_through_the_origin():
+    left, right, _, bottom = box(blue(image_of(numpy.maximum(0, GRID[..., 2]), extent=1)))
+    assert (right - left, (left + right) / 2) == pytest.approx((100, 100), abs=2)
+    assert bottom < 106, "all of it is above the origin, seen from 24 degrees above"
+
+
+def test_what_is_nearer_hides():
+    near, far = (numpy.maximum(0, sign * GRID[..., 1]) for sign in (-1, 1))  # the eye is at -y
+    alone = red(image_of(far, colours=numpy.broadcast_to(sphere.NEGATIVE, GRID.shape))).sum()
+    values, colours = sphere.joint(numpy.stack([near, far]), [sphere.POSITIVE, sphere.NEGATIVE])
+    both = red(image_of(values, colours=colours)).sum()
+    assert 100 < both < alone - 100
+
+
+def test_an_axis_is_hidden_inside_and_behind():
+    points = numpy.array([[0, 0, 0.3], [0, 0, 0.9], -0.9 * sphere.TOWARDS, 0.9 * sphere.TOWARDS])
+    hidden = sphere.hidden(numpy.full(GRID.shape[:2], 0.5), points, 1.2)
+    assert hidden.tolist() == [True, False, True, False]

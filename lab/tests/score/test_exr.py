@@ -88,7 +88,3 @@ class Odd(test_score.Suite):
                 ("damaged", self.made()[:200])):
             with self.assertRaisesRegex(exr.BadImage, f"room-left.exr: .*{words}"):
                 self.ours(data)
-
-
-if __name__ == "__main__":
-    unittest.main()

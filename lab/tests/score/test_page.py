@@ -77,7 +77,3 @@ class Page(test_score.Suite):
         self.addCleanup(setattr, page, "LARGEST", limit)
         with self.assertRaisesRegex(exr.BadImage, "allowed: 1000; use --only"):
             page.made(self.folder, self.folders())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -308,7 +308,3 @@ class CamerasAndLights(unittest.TestCase):
                 images.append(exr.colours(exr.read(folder / "image.exr"), folder)[0])
         self.assertGreater(images[0].max(), 0.1)
         self.assertLess(abs(images[0] - images[1]).mean(), 1e-3 * images[0].mean())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Draws charts, sheets of plots and the report page from clpv's results.
+"""Draws charts and the report page from clpv's results.
 
 clpv writes numbers (JSON, NPY) and images (PNG) into a folder and runs this package on it
-(host/cli/drawing.hpp); scripts use its sheets and style. Needs matplotlib and NumPy, and Jinja2 for
+(host/cli/drawing.hpp); scripts use its style. Needs matplotlib and NumPy, and Jinja2 for
 the page: Debian's python3-matplotlib, python3-numpy, python3-jinja2.
 """

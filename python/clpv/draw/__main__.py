@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m clpv.draw bench|basis|compare|report [IN OUT]
+"""python3 -m clpv.draw compare|report [IN OUT]
 
-    bench   IN OUT  draws charts of IN/bench.json into the folder OUT
-    basis   IN OUT  draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the
-                    folder OUT
     compare IN OUT  draws the images and differences of IN/compare.json and IN/*.npy into the file OUT
     report  IN OUT  writes the page of IN/report.json and its images into the file OUT
 
@@ -16,7 +13,7 @@ import sys
 
 from clpv import output
 
-KINDS = "bench", "basis", "compare", "report"
+KINDS = "compare", "report"
 
 
 def fail(code, words):

@@ -1,19 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Charts of `clpv bench`: times of suite `layouts`. They go by fields of rows, not by
-names."""
-import pathlib
-
-from clpv import output
-from clpv.draw import documents, style
+"""Chart of `clpv bench`: times of suite `layouts`. It goes by fields of rows, not by names."""
+from clpv.draw import style
 from clpv.draw.documents import NUMBER, TEXT_OR_NULL
 
 ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout": TEXT_OR_NULL,
        "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}
-DEVICE_CHARS = 70
-
-
-def of_suite(rows, suite):
-    return [row for row in rows if row["suite"] == suite and row["status"] == "ok"]
 
 
 def distinct(values):
@@ -31,7 +22,7 @@ def work_of(row):
 
 
 def layouts(rows):
-    rows = of_suite(rows, "layouts")
+    rows = [row for row in rows if row["suite"] == "layouts" and row["status"] == "ok"]
     groups = distinct(map(work_of, rows))
     if not groups:
         return None
@@ -52,24 +43,3 @@ def layouts(rows):
             axis.annotate(f"{r['median']:.2f}", (r["median"], i), textcoords="offset points",
                           xytext=(4, 5), size=7)
     return figure
-
-
-def save(figure, folder, name, context):
-    """Writes the chart with a footer below it, which the margins include."""
-    device = f"{context['device']} ({context['platform']} {context['driver']})"[:DEVICE_CHARS]
-    version = context["git_describe"]
-    if version == "unknown":  # a build from a source archive
-        version = context["clpv_version"]
-    figure.tight_layout()
-    figure.text(1, 0, f"clpv {version} on {device}", ha="right", va="top", size=6, color=style.SOFT)
-    for suffix in ("svg", "png"):
-        output.write(folder / f"{name}.{suffix}",
-                     style.rendered(figure, suffix, dpi=150, bbox_inches="tight"))
-
-
-def draw(source: pathlib.Path, folder: pathlib.Path) -> None:
-    document = documents.read(source / "bench.json")
-    rows, context = documents.checked(document, "bench.json", "benchmarks",
-                                      ROW), document["context"]
-    if figure := layouts(rows):
-        save(figure, folder, "layouts", context)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Style and output of all charts, and sheets of tiles."""
+"""Style and output of all charts."""
 import io
 import math
 
@@ -68,41 +68,3 @@ def panels(count, columns, size):
     for axis in list(axes.flat)[count:]:
         axis.axis("off")
     return figure, list(axes.flat)[:count]
-
-
-class Sheet:
-    """Tiles of one size in rows, each with caption lines below or above, under title lines."""
-
-    def __init__(self, title, columns, count, tile, caption_lines=1, above=False, font=8.5):
-        """`tile`: width and height [inches] without captions."""
-        self.above, self.font = above, font
-        self.line = font * 1.45 / 72
-        caption, gap = caption_lines * self.line + 0.06, 0.03
-        heading = len(title) * 11 * 1.45 / 72 + 0.1
-        rows = math.ceil(count / columns)
-        width, height = columns * (tile[0] + gap) + gap, heading + rows * (tile[1] + caption) + gap
-        self.figure = pyplot.figure(figsize=(width, height), facecolor="white")
-        self.figure.text(0.06 / width, 1 - 0.06 / height, "\n".join(title), fontsize=11, va="top",
-                         linespacing=1.35)
-        self.places = []
-        for i in range(count):
-            left = gap + i % columns * (tile[0] + gap)
-            top = heading + i // columns * (tile[1] + caption) + (caption if above else 0)
-            self.places.append(
-                (left / width, 1 - (top + tile[1]) / height, tile[0] / width, tile[1] / height))
-
-    def tile(self, i, caption):
-        """Returns the empty axes of tile i, with its caption."""
-        axis = self.figure.add_axes(self.places[i])
-        axis.axis("off")
-        y, anchor, offset = (1, "bottom", 3) if self.above else (0, "top", -1)
-        axis.annotate(caption, (0.5, y), xycoords="axes fraction", xytext=(0, offset),
-                      textcoords="offset points", ha="center", va=anchor, fontsize=self.font,
-                      linespacing=1.3, annotation_clip=False)
-        return axis
-
-    def save(self, path, dpi):
-        """Writes PNG or JPEG, by the suffix."""
-        suffix = path.suffix.lstrip(".")
-        options = {"pil_kwargs": {"quality": 80, "optimize": True}} if suffix == "jpg" else {}
-        output.write(path, rendered(self.figure, suffix, dpi=dpi, **options))

@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes scenes whose insides no light should reach, or little: `generate_leaks.py FOLDER`.
+"""Writes scenes whose insides no light should reach, or little, for scripts/leaks and bake.py.
 
-Python's standard library only; the same bytes every time. scripts/leaks measures them.
+The same bytes every time.
 
 A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its walls are one
 double-sided sheet, or two sheets some cells of 12.5 / 32 m apart. `turned` is turned by 20 degrees
@@ -14,12 +13,9 @@ import base64
 import itertools
 import json
 import math
-import pathlib
 import struct
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from clpv import output  # noqa: E402
+from . import output
 
 CELL = 12.5 / 32
 LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
@@ -132,7 +128,7 @@ def model(faces, offset, double_sided):
     data = b"".join(struct.pack("<3f", *corner) for corner in corners)
     uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
     return {
-        "asset": {"version": "2.0", "generator": "clpv scenes/generate_leaks.py"},
+        "asset": {"version": "2.0", "generator": "clpv scripts/leaks"},
         "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "translation": offset}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
         "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [*GREY, 1], "metallicFactor": 0},
@@ -148,7 +144,7 @@ def model(faces, offset, double_sided):
 def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
     """Writes the shapes named, all by default, moved by `offset` [m]. `double_sided`: surfaces have
     no back."""
-    file = output.Folder(folder, "scenes/generate_leaks.py").file
+    file = output.Folder(folder, "scripts/leaks").file
     ground = [(-15, -1.5, 15), (15, -1.5, 15), (15, -1.5, -15), (-15, -1.5, -15)]
     for name, faces in shapes():
         if names and name not in names:
@@ -163,13 +159,3 @@ def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
                 }], "cascades": {"count": 3, "size_metres": 12.5}
             }
             output.write(file(f"{name}-{light}.json"), json.dumps(scene, indent=1) + "\n")
-
-
-def main(arguments):
-    if len(arguments) != 1:
-        sys.exit(__doc__)
-    write(arguments[0])
-
-
-if __name__ == "__main__":
-    sys.exit(output.exit_code(main, sys.argv[1:]))
