@@ -225,14 +225,15 @@ TEST(TurnedRooms, AnOpenRoomUnderASkyHasItsLight) {
   EXPECT_NEAR(share, 1, 0.1);
 }
 
-// Triangles of masked materials hide no sample points of links; they block by their areas.
+// Triangles of masked materials hide no sample points of links; they block by their areas, and a
+// sheet leaves a ninth.
 TEST(TurnedRooms, MaskedWallsBlockTheSky) {
   const Room room{.degrees = 0, .sheet = true};
   SceneData scene = room.scene(0.5f, 0);
   scene.materials[0].flags |= CLPV_MATERIAL_MASKED;
   scene.materials[0].alpha_cutoff = 0.5f;
   scene.sky = std::make_shared<Sky>(constant_sky(glm::vec3(1)));
-  EXPECT_LE(mean(irradiance(scene, room.camera(), Bounces::one)), 0.1 * std::numbers::pi);
+  EXPECT_LE(mean(irradiance(scene, room.camera(), Bounces::one)), 0.15 * std::numbers::pi);
 }
 
 // Where a roof meets the floor, ends of rays that are lifted off it would lie outside.
