@@ -132,10 +132,10 @@ def draw_spheres(target):
 
 def draw_frame(folder):
     """A frame of the atrium stage by stage: frame-NAME.jpg of docs/frame.md."""
-    from .claims import from_the_sun  # measures by it, too
+    from . import claims, section  # these need the native module
     scene = clpv.Scene(ROOT / "scenes/atrium.json")
     camera = next(each for each in scene.cameras if each.name == "nave")
-    above = from_the_sun(camera, scene.lights[0].direction, CASCADE)
+    above = claims.from_afar(camera, scene.lights[0].direction, CASCADE)
     for name, (view, exposure, options) in FRAME.items():
         size = (360, 360) if name == "rsm" else (640, 360)
         image = clpv.Renderer(scene, **options).render(view, above if name == "rsm" else camera,
@@ -143,3 +143,4 @@ def draw_frame(folder):
         made, pixels = io.BytesIO(), image.display(scene.exposure + exposure)[..., :3]
         pyplot.imsave(made, pixels, format="jpg", pil_kwargs={"quality": 80, "optimize": True})
         output.write(folder / f"frame-{name}.jpg", made.getvalue())
+    section.draw(scene, folder / "frame-volume.jpg")

@@ -246,15 +246,14 @@ def shadows(arguments):
     return {"floor_pixels": int(floor.sum()), "rows": list(rows)}
 
 
-FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
 OTHER_WAY = 0.5  # cosine of the angle beyond which two normals differ
 
 
-def from_the_sun(camera, direction, size):
-    """Nearly parallel, `size` [m] about the camera's eye."""
+def from_afar(camera, direction, size, distance=1000):
+    """Nearly parallel, `size` [m] about the camera's eye, from that distance [m]."""
     along = np.array(direction) / np.linalg.norm(direction)
-    return camera.replace(eye=camera.eye - FROM_THE_SUN * along, target=camera.eye, up=(0, 1, 0),
-                          near=0.05, fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
+    return camera.replace(eye=camera.eye - distance * along, target=camera.eye, up=(0, 1, 0),
+                          near=0.05, fov=math.degrees(2 * math.atan(size / 2 / distance)))
 
 
 def neighbours(values):
@@ -275,7 +274,7 @@ def texels(arguments):
     renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
     rows = []
     for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
-        albedo = renderer.render("albedo", from_the_sun(camera, sun, size)).array[..., :3]
+        albedo = renderer.render("albedo", from_afar(camera, sun, size)).array[..., :3]
         normal = renderer.show("normal").array[..., :3].astype(float)
         flux = albedo.astype(float).sum(axis=-1) * np.clip(-(normal @ sun), 0, None)
         met, beside = neighbours((normal ** 2).sum(axis=-1) > 0.5)

@@ -9,13 +9,11 @@ about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a
 one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs.
 Each is lit by a sun, an even sky or a lamp outside.
 """
-import base64
 import itertools
 import json
 import math
-import struct
 
-from . import output
+from . import native, output
 
 CELL = 12.5 / 32
 LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
@@ -121,39 +119,22 @@ LIGHTS = {
 }
 
 
-def model(faces, offset, double_sided):
-    """A glTF document of grey quadrilaterals; its buffer is a data URI."""
-    corners = [[round(v / STEP) * STEP for v in face[i]]
-               for face in faces for i in (0, 1, 2, 0, 2, 3)]
-    data = b"".join(struct.pack("<3f", *corner) for corner in corners)
-    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
-    return {
-        "asset": {"version": "2.0", "generator": "clpv scripts/leaks"},
-        "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "translation": offset}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
-        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [*GREY, 1], "metallicFactor": 0},
-                       "doubleSided": double_sided}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(corners),
-                       "type": "VEC3", "min": list(map(min, zip(*corners))),
-                       "max": list(map(max, zip(*corners)))}],
-        "bufferViews": [{"buffer": 0, "byteLength": len(data)}],
-        "buffers": [{"byteLength": len(data), "uri": uri}]
-    }
-
-
 def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
     """Writes the shapes named, all by default, moved by `offset` [m]. `double_sided`: surfaces have
     no back."""
-    file = output.Folder(folder, "scripts/leaks").file
+    clpv, file = native(), output.Folder(folder, "scripts/leaks").file
+    look = clpv.Material(base_colour=GREY, double_sided=double_sided)
     ground = [(-15, -1.5, 15), (15, -1.5, 15), (15, -1.5, -15), (-15, -1.5, -15)]
     for name, faces in shapes():
         if names and name not in names:
             continue
-        document = model(faces + [ground], offset, double_sided)
-        output.write(file(name + ".gltf"), json.dumps(document) + "\n")
+        corners = [[round(v / STEP) * STEP + o for v, o in zip(corner, offset)]
+                   for face in faces + [ground] for corner in face]
+        triangles = [[i, i + j, i + j + 1] for i in range(0, len(corners), 4) for j in (1, 2)]
+        clpv.Scene.from_arrays(corners, triangles, material=look).save(file(name + ".glb"))
         for light, values in LIGHTS.items():
             scene = {
-                "model": name + ".gltf", **values, "cameras": [{
+                "model": name + ".glb", **values, "cameras": [{
                     "name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
                     "vertical_fov_degrees": 90
                 }], "cascades": {"count": 3, "size_metres": 12.5}

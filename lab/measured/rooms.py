@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from . import native
+from .leak_scenes import turned
 from .rows import ROOMS
 from .sheets import sheet
 
@@ -16,11 +17,6 @@ clpv = native()
 SIZE, PATHS = (120, 68), 256  # of a row of the table; paths a pixel
 SHOWN = 240, 135  # pixels of a tile of the picture
 CASCADES = {"cascades": 3, "cascade_size": 12.5}
-
-
-def turned(points, degrees):
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return np.asarray(points, float) @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
 
 
 def quads(air, solid):
@@ -51,8 +47,9 @@ def scene_of(room, degrees):
         material=clpv.Material(base_colour=room["albedo"], emission=room.get("emission", 0)))
     eye, target = turned(room["camera"], degrees)
     scene.cameras = [clpv.Camera(eye, target, fov=70)]
-    scene.lights = [clpv.Light(**{key: turned(value, degrees) if key in ("position", "direction")
-                                  else value for key, value in light.items()})
+    scene.lights = [clpv.Light(**{key: turned([value], degrees)[0]
+                                  if key in ("position", "direction") else value
+                                  for key, value in light.items()})
                     for light in room.get("lights", [])]
     return scene
 

@@ -14,16 +14,15 @@ import argparse
 import hashlib
 import io
 import json
-import math
 import pathlib
 import subprocess
 import tarfile
 import tempfile
 
-import numpy
-
-from . import ROOT, model_files, output
+from . import ROOT, model_files, native, output
 from .measure import run
+
+clpv = native()
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
 # Scenes and their cameras (none: all), files of other names, instants [s], cameras and lights then,
@@ -35,50 +34,26 @@ SCORER = (("python", "clpv/output.py", "clpv/draw/viewer.*"),
           ("lab/python", "clpv_lab/score/*.py", "clpv_lab/score/*.html"))  # files by their root
 
 
-def facing(direction, eye=(0, 0, 0), up=(0, 1, 0)):
-    """Returns a node's matrix, column by column, that turns -z to a direction, y towards `up`, and
-    moves to `eye`."""
-    z = -numpy.array(direction, float) / numpy.linalg.norm(direction)
-    x = numpy.cross(up, z)
-    if numpy.linalg.norm(x) < 1e-6:
-        x = numpy.cross((0, 0, 1), z)
-    x /= numpy.linalg.norm(x)
-    axes = [[*x, 0], [*numpy.cross(z, x), 0], [*z, 0], [*eye, 1]]
-    return [float(number) for column in axes for number in column]
-
-
-def views_gltf(scene):
-    """glTF of a scene file's cameras and directional lights, in metres."""
-    unit, nodes, cameras, lights = scene.get("metres_per_unit", 1), [], [], []
-    for camera in scene["cameras"]:
-        eye, target = numpy.array(camera["eye"], float), numpy.array(camera["target"], float)
-        nodes.append({
-            "name": camera["name"], "camera": len(cameras),
-            "matrix": facing(target - eye, unit * eye)
-        })
-        cameras.append({
-            "name": camera["name"], "type": "perspective", "perspective": {
-                "yfov": math.radians(camera.get("vertical_fov_degrees", 60)),
-                "aspectRatio": SIZE[0] / SIZE[1], "znear": 0.05
-            }
-        })
-    for light in scene["lights"]:
-        if light["kind"] != "directional":
-            raise ValueError(
-                f"light {light.get('name')}: found {light['kind']}; allowed: directional")
-        nodes.append({
-            "name": light["name"], "matrix": facing(light["direction"]),
-            "extensions": {"KHR_lights_punctual": {"light": len(lights)}}
-        })
-        lights.append({
-            "name": light["name"], "type": "directional", "intensity": light["illuminance_lux"],
-            "color": light.get("colour", [1, 1, 1])
-        })
-    return {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}],
-        "nodes": nodes, "cameras": cameras, "extensionsUsed": ["KHR_lights_punctual"],
-        "extensions": {"KHR_lights_punctual": {"lights": lights}}
-    }
+def views_gltf(scene, model):
+    """glTF of a scene file's cameras and lights, in metres: the JSON that the library writes for
+    them without the model. Nodes have the lights' names."""
+    with tempfile.TemporaryDirectory() as folder:
+        file, views = pathlib.Path(folder) / "views.json", clpv.Scene()
+        file.write_text(json.dumps({**scene, "model": str(model)}), encoding="utf-8")
+        given = clpv.Scene(file)
+        views.cameras = [camera.replace(light="") for camera in given.cameras]
+        views.lights = given.lights
+        views.save(file.with_suffix(".glb"))
+        data = file.with_suffix(".glb").read_bytes()
+    size = int.from_bytes(data[12:16], "little")  # of the first chunk, which begins at 20
+    gltf = json.loads(data[20:20 + size])
+    lights = gltf["extensions"]["KHR_lights_punctual"]["lights"]
+    for node in gltf["nodes"]:
+        if "extensions" in node:
+            node["name"] = lights[node["extensions"]["KHR_lights_punctual"]["light"]]["name"]
+    for camera in gltf["cameras"]:
+        camera["perspective"]["aspectRatio"] = SIZE[0] / SIZE[1]
+    return gltf
 
 
 def lights_of(scene, camera):
@@ -120,7 +95,7 @@ def add_scene(folder, name, sponza, cache):
         camera["name"]: camera
         for camera in scene["cameras"] if not SCENES[name] or camera["name"] in SCENES[name]
     }
-    gltf = views_gltf({**scene, "cameras": list(cameras.values())})
+    gltf = views_gltf({**scene, "cameras": list(cameras.values())}, model)
     folder.write(f"cameras/{name}.gltf", json.dumps(gltf, indent=1) + "\n")
     views = []
     for traced in ground_truths(name, cameras, None if ours else sponza, cache):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Verdicts from outcomes, tolerances, and the rows and figures of scripts/reproduce that need no
-model."""
+model; cameras of the suite."""
 import json
 import math
 import os
@@ -16,7 +16,7 @@ os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "lab"))
 for module in "jinja2", "matplotlib":
     pytest.importorskip(module, reason=f"all of it: no {module} (Debian: apt install python3-{module})")
-from measured import basis_figures, output, reproduce, sphere, verdicts  # noqa: E402
+from measured import basis_figures, output, reproduce, sphere, suite, verdicts  # noqa: E402
 from measured.sheets import style  # noqa: E402
 
 pyplot = style.pyplot
@@ -73,6 +73,16 @@ def test_figures_of_bases_are_drawn(tmp_path):
     names = basis_figures.draw(output.Folder(tmp_path, "test"), "rotate", ["srbf8v2"])
     assert names == [f"lobes-rotate/figure{number}.png" for number in (2, 3, 6)]
     assert all(pyplot.imread(tmp_path / name).shape[1] > 100 for name in names)
+
+
+def test_the_suite_has_the_cameras_and_lights_of_its_scene():
+    file = ROOT / "scenes/cornell.json"
+    scene = json.loads(file.read_text())
+    views = suite.views_gltf(scene, file.with_suffix(".glb"))
+    assert [node["name"] for node in views["nodes"]] == [
+        each["name"] for each in scene["cameras"] + scene["lights"]]
+    eye = scene["metres_per_unit"] * numpy.array(scene["cameras"][0]["eye"])
+    assert views["nodes"][0]["matrix"][12:15] == pytest.approx(eye)
 
 
 SIZE = 200  # pixels of a spherical plot, whose surfaces have known outlines

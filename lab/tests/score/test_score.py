@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The scorer: its numbers are those of `clpv compare`, bias and noise, bad input by name.
-The suite's cameras and lights.
 
 CLPV: the program.
 """
@@ -10,7 +9,6 @@ import io
 import json
 import os
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
@@ -19,11 +17,9 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / folder)
-                for folder in ("python", "lab/python", "lab")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("python", "lab/python")]
 from clpv_lab.score import __main__ as command, errors, exr, suite as scored  # noqa: E402
 from exr_writer import write  # noqa: E402
-from measured import suite  # noqa: E402
 
 CLPV = os.environ["CLPV"]
 SIZE = 40, 24
@@ -277,34 +273,3 @@ class Files(unittest.TestCase):
                                 "--attrib", "openexr:lineOrder", order, "-o", target], check=True)
                 expected = image.astype(numpy.float16) if kind == "half" else image
                 numpy.testing.assert_array_equal(exr.colours(exr.read(target), target)[0], expected)
-
-
-class CamerasAndLights(unittest.TestCase):
-    def test_a_model_with_them_has_the_scene_files_image(self):
-        scene = json.loads((ROOT / "scenes/cornell.json").read_text())
-        data = (ROOT / "scenes/cornell.glb").read_bytes()
-        size = struct.unpack_from("<I", data, 12)[0]
-        model, views = json.loads(data[20:20 + size]), suite.views_gltf(scene)
-        roots = model["scenes"][model.get("scene", 0)]["nodes"]
-        model["nodes"].append({"scale": [scene["metres_per_unit"]] * 3, "children": list(roots)})
-        roots[:] = [
-            len(model["nodes"]) - 1, *(len(model["nodes"]) + i for i in range(len(views["nodes"])))
-        ]
-        model["nodes"] += views["nodes"]
-        model |= {key: views[key] for key in ("cameras", "extensions")}
-        text = json.dumps(model).encode()
-        text += b" " * (-len(text) % 4)
-        chunks = struct.pack("<2I", len(text), 0x4e4f534a) + text + data[20 + size:]
-        images = []
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            (folder / "joined.glb"
-             ).write_bytes(struct.pack("<3I", 0x46546c67, 2, 12 + len(chunks)) + chunks)
-            for file in ROOT / "scenes/cornell.json", folder / "joined.glb":
-                subprocess.run([
-                    CLPV, "--quiet", "pathtrace", file, "--camera", "front", "--width", "40",
-                    "--height", "24", "--spp", "2", "--view", "direct", "-o", folder / "image.exr"
-                ], check=True, stdout=subprocess.DEVNULL)
-                images.append(exr.colours(exr.read(folder / "image.exr"), folder)[0])
-        self.assertGreater(images[0].max(), 0.1)
-        self.assertLess(abs(images[0] - images[1]).mean(), 1e-3 * images[0].mean())
