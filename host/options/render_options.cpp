@@ -119,11 +119,10 @@ void for_each_option(Options& o, Visit&& visit) {
         "number of diffuse bounces; more than 1 needs --transport sweep; auto: all with a sweep, "
         "else 1",
         Named{});
-  visit(
-      "bounce-sweeps", o.bounce_sweeps,
-      "sweeps before the rest of --bounces all is estimated; more carry light "
-      "farther through corridors",
-      Range{kLeastSeriesSweeps, kMaxBounceSweeps});
+  visit("bounce-sweeps", o.bounce_sweeps,
+        "sweeps before the rest of --bounces all is estimated; more carry light "
+        "farther through corridors",
+        Range{kLeastSeriesSweeps, kMaxBounceSweeps});
   visit("layout", o.layout,
         "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by "
         "block",
