@@ -13,12 +13,6 @@ glm::ivec3 cube_at(const glm::ivec3& cell, int octant) {
   return cell - 1 + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
 }
 
-/// Returns true if a cube lies between the centres of a grid of n cells along each axis.
-bool between_centres(int n, const glm::ivec3& cube) {
-  return glm::all(glm::greaterThanEqual(cube, glm::ivec3(0))) &&
-         glm::all(glm::lessThanEqual(cube, glm::ivec3(n - 2)));
-}
-
 /// Index of a cube's first point.
 std::size_t first_point(int n, const glm::ivec3& cube) {
   return static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPointsOfCube;
@@ -56,9 +50,15 @@ double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::i
     for (int axis = 0; axis < 3; ++axis)
       crossed = crossed && (side[axis] == 0 || (side[axis] > 0) == (upper[axis] == 1));
     if (!crossed) continue;
-    const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
+    const glm::ivec3 nearest = glm::clamp(cube, 0, std::max(n - 2, 0));
+    int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (nearest[axis] == cube[axis]) continue;
+      const int bit = 1 << axis, inner = nearest[axis] < cube[axis] ? bit : 0;
+      here = (here & ~bit) | inner, there = (there & ~bit) | inner;
+    }
     for (int point = 0; point < kPointsOfCube; ++point) {
-      const int hidden = between_centres(n, cube) ? occluded[first_point(n, cube) + point] : 0;
+      const int hidden = occluded[first_point(n, nearest) + point];
       const bool sees_here = (hidden >> here & 1) == 0, sees_there = (hidden >> there & 1) == 0;
       both += sees_here && sees_there, either += sees_here || sees_there;
     }

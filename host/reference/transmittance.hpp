@@ -19,7 +19,8 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
 
 /// Returns the transmittance of a link into `cell` from `side`: of the sample points about it, the
 /// share that see both of its ends among those that see one (kernels/sweep/sweep_links.cl).
-/// `occluded`: bits of visibility_masks(), n^3 cubes; nothing is hidden outside the grid.
+/// `occluded`: bits of visibility_masks(), n^3 cubes; outside the grid centres see
+/// what those at the border see.
 double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
                   const glm::ivec3& side);
 

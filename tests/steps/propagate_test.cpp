@@ -230,14 +230,15 @@ TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
   EXPECT_EQ(along_axes, 6);
 }
 
-/// Transmittance of a link into the middle one of 3^3 cells. `hidden`: centres that a point of a
+/// Transmittance of a link into a cell of 3^3, the middle one. `hidden`: centres that a point of a
 /// cube does not see, by its column and row.
-double seen_share(const std::function<int(int, int)>& hidden, const glm::ivec3& side) {
+double seen_share(const std::function<int(int, int)>& hidden, const glm::ivec3& side,
+                  int cell = 1) {
   constexpr int kCells = 3;
   std::vector<std::uint8_t> occluded(std::size_t{64} * kCells * kCells * kCells);
   for (int i = 0; i < static_cast<int>(occluded.size()); ++i)
     occluded[i] = static_cast<std::uint8_t>(hidden(i % 4, i / 4 % 4));
-  return reference::seen_share(occluded, kCells, glm::ivec3(1), side);
+  return reference::seen_share(occluded, kCells, glm::ivec3(cell), side);
 }
 
 TEST(Transmittance, LinksTransmitTheShareOfPointsThatSeeBothEnds) {
@@ -255,6 +256,8 @@ TEST(Transmittance, LinksTransmitTheShareOfPointsThatSeeBothEnds) {
     EXPECT_EQ(seen_share(all, side), 0) << "enclosed centres";
   }
   EXPECT_EQ(seen_share(wall, {0, 1, -1}), 1) << "along the wall";
+  EXPECT_EQ(seen_share(wall, {1, -1, 0}, 0), 0) << "across the wall, from outside the grid";
+  EXPECT_EQ(seen_share(wall, {-1, 0, 0}, 0), 1) << "from outside the grid";
 }
 
 }  // namespace

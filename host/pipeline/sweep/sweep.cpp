@@ -227,7 +227,7 @@ void Sweeper::set_blockers(std::size_t cascade, const Volume* geometry, const Bu
   if (options_.points) {
     const std::size_t n = options_.grid;
     count_hidden_points_.value().set(occluded, static_cast<cl_uint>(cascade), hidden_);
-    count_hidden_points_->launch({n, n, n}, {std::min(n, kRowGroup), 1, 1});
+    count_hidden_points_->launch({n + 1, n + 1, n + 1}, {std::min(n + 1, kRowGroup), 1, 1});
     transmittance_->add(hidden_);
   }
   volumes_.launch(*transmittance_, 1);
@@ -355,7 +355,7 @@ void Sweeper::launch(Halo halo, std::size_t cascade, const ClpvSweepHalo& stored
     directions.sweep.set(bins_, halo < kWhite ? directions.table : directions.white_table,
                          directions.coefficients, directions.means, sources_.coefficients,
                          sources_.lit, directions.links, border_, stored, plane_buffer_, swept_,
-                         directions.halos[halo], last);
+                         directions.halos[entering(halo)], last);
     if (medium_)
       medium_->add_to(directions.sweep, cascade, scattered);
     else
