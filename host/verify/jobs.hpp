@@ -108,7 +108,7 @@ struct SweepProblem {
   float sky_scale = 1;
   std::vector<reference::MappedLight> lights = {};  ///< in SweepOptions::medium
   float medium_scale = 1;
-  /// Bits of visibility_masks() for each cascade, which close links; empty: none.
+  /// Bits of visibility_masks() for each cascade, for links by sample points; empty: none.
   std::vector<std::vector<std::uint8_t>> occluded = {};
 };
 

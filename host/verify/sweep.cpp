@@ -140,7 +140,7 @@ struct SweepCase {
   SweepForm form = SweepForm::bins;
   bool sky = false;
   bool medium = false;
-  bool closed = false;  ///< occluded cells close links
+  bool closed = false;  ///< links by sample points
   int sweeps = kSeriesSweeps;
 
   std::string name() const {
