@@ -24,6 +24,12 @@ namespace {
 /// D of every direction: one volume of 3 channels per direction, [bin * parts^2 + part].
 using Fields = std::vector<Volume>;
 
+/// The centre of a fine grid's cell in cells of a coarse grid, from the centre of its first cell.
+glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell) {
+  const glm::dvec3 centre = vector(fine.origin) + double{fine.cell} * (glm::dvec3(cell) + 0.5);
+  return (centre - vector(coarse.origin)) / double{coarse.cell} - 0.5;
+}
+
 /// Boundary condition of a cascade: light of the coarser cascade, or of the sky.
 struct BoundaryCondition {
   const SweptCascade* cascade = nullptr;  ///< coarser cascade; null: none
@@ -144,6 +150,7 @@ class Sweep {
   }
 
   /// Boundary condition at a cell outside this grid: equal radiance on both sides, D = L s^2 |w_m|.
+  /// Coarser cells count by the share of sample points in the cell that see them.
   double inflow(int channel, int bin, int part, const SweepDirection& d,
                 const glm::ivec3& cell) const {
     if (boundary_.cascade == nullptr) {
@@ -157,8 +164,28 @@ class Sweep {
     const SweepBin& sweep_bin = (*boundary_.bins)[bin];
     const double edge = double{fine.cell} / coarse.cell;
     return edge * edge * d.flux / sweep_bin.directions[from].flux *
-           trilinear((*boundary_.fields)[bin * parts * parts + from], channel,
-                     position_in(coarse, fine, cell))[0];
+           interpolated((*boundary_.fields)[bin * parts * parts + from], channel,
+                        position_in(coarse, fine, cell),
+                        position_in(coarse, fine, glm::clamp(cell, 0, n_ - 1)));
+  }
+
+  /// Light of the coarser cascade at a place in its cells, which goes on to the place `inner`.
+  double interpolated(const Volume& field, int channel, const glm::dvec3& at,
+                      const glm::dvec3& inner) const {
+    const std::vector<std::uint8_t>* occluded = boundary_.cascade->occluded;
+    double sum = 0, weights = 0;
+    int both = 0, either = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 centre = glm::ivec3(glm::floor(at)) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::dvec3 w = 1.0 - glm::abs(at - glm::dvec3(centre));
+      const int seen = seen_points(occluded, n_, at, centre);
+      weights += w.x * w.y * w.z * seen;
+      sum += w.x * w.y * w.z * seen * field.cell(channel, centre)[0];
+      if (glm::any(glm::greaterThan(glm::abs(inner - glm::dvec3(centre)), glm::dvec3(1)))) continue;
+      const int there = seen_points(occluded, n_, inner, centre);
+      both += std::min(seen, there), either += std::max(seen, there);
+    }
+    return weights > 0 ? sum / weights * both / std::max(either, 1) : 0;
   }
 
   SweptCascade cascade_;
@@ -192,23 +219,6 @@ Volume collect_bins(const std::vector<SweepBin>& bins, const Fields& fields) {
 }
 
 }  // namespace
-
-glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell) {
-  const glm::dvec3 centre = vector(fine.origin) + double{fine.cell} * (glm::dvec3(cell) + 0.5);
-  return (centre - vector(coarse.origin)) / double{coarse.cell} - 0.5;
-}
-
-std::vector<double> trilinear(const Volume& volume, int channel, const glm::dvec3& at) {
-  const glm::dvec3 low = glm::floor(at), t = at - low;
-  std::vector<double> sum(volume.coefficients, 0.0);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::dvec3 weights = glm::mix(1.0 - t, t, glm::dvec3(up));
-    const std::vector<double> c = volume.cell(channel, glm::ivec3(low) + up);
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weights.x * weights.y * weights.z * c[i];
-  }
-  return sum;
-}
 
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
                           const std::vector<SweptCascade>& cascades, const Sky* sky) {

@@ -27,13 +27,6 @@ struct SweptCascade {
   const std::vector<std::uint8_t>* occluded = nullptr;
 };
 
-/// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of
-/// its first cell.
-glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell);
-/// Returns all coefficients of a channel at such a position, interpolated trilinearly between cell
-/// centres; 0 outside.
-std::vector<double> trilinear(const Volume& volume, int channel, const glm::dvec3& at);
-
 /// Returns the swept light of every cascade in bins24, as radiance times s^2. `cascades`: finest
 /// first. `transport`: TransportKind::sweep. `sky`: boundary condition of the coarsest cascade;
 /// null: dark border.

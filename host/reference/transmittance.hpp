@@ -24,4 +24,10 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
 double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
                   const glm::ivec3& side);
 
+/// Returns how many of the eight sample points in a cell of the next finer cascade, about `at` in
+/// cells from the first centre, see a centre; all outside the grid or without `occluded`
+/// (kernels/sweep/sweep_border.cl).
+int seen_points(const std::vector<std::uint8_t>* occluded, int n, const glm::dvec3& at,
+                const glm::ivec3& centre);
+
 }  // namespace clpv::reference

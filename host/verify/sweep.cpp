@@ -76,7 +76,7 @@ struct SweepWork {
 
   void run() {
     for (std::size_t i = problem.grids.size(); i-- > 0;) {
-      if (problem.options.blocking) sweeper.set_blockers(i, &blockers[i], occluded);
+      if (problem.options.blocking) sweeper.set_blockers(i, problem.grids, &blockers[i], occluded);
       if (!white.empty())
         sweeper.set_surfaces(i, problem.grids, white[i], bounces() ? &reflectors[i] : nullptr,
                              swept[i]);

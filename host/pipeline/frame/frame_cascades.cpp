@@ -177,7 +177,7 @@ void FrameCascades::update_links(int cascade) {
   links_[cascade].update(keys_[cascade].geometry, [&] {
     const Buffer points = occluded(cascade);
     const StageScope scope(session_, {Pass::propagate, cascade});
-    sweeper_->set_blockers(cascade, geometry(cascade), points);
+    sweeper_->set_blockers(cascade, grids_, geometry(cascade), points);
   });
 }
 

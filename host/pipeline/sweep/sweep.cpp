@@ -195,6 +195,11 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, std::size_t cas
         border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
     border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);
     made.border.emplace(session_, border, "sweep_border");
+    for (Buffer* each : {&made.hidden, &made.closed})
+      *each = zeroed_buffer(
+          session_, 3 * kSweepBins * bordered_plane_size(options_.grid) * sizeof(cl_uint),
+          "what the border of a cascade sees");
+    if (options_.points) made.count_hidden.emplace(session_, border, "count_hidden_at_border");
   } else {
     Sky even;
     even.width = even.height = 1, even.texels = {glm::vec3(0, 1, 1)};
@@ -221,11 +226,21 @@ void Sweeper::enter_medium(std::size_t cascade, const ClpvGrid& grid) {
   medium_->place(cascade, grid);
 }
 
-void Sweeper::set_blockers(std::size_t cascade, const Volume* geometry, const Buffer& occluded) {
-  transmittance_.value().set(cascades_[cascade].links);
+void Sweeper::set_blockers(std::size_t cascade, const std::vector<ClpvGrid>& grids,
+                           const Volume* geometry, const Buffer& occluded) {
+  Directions& directions = cascades_[cascade];
+  transmittance_.value().set(directions.links);
   if (options_.blocking) transmittance_->add(geometry->memory());
   if (options_.points) {
     const std::size_t n = options_.grid;
+    if (directions.border) {
+      const std::array<int, 3> offset = offset_in_coarser(grids[cascade + 1], grids[cascade]);
+      directions.count_hidden.value().set(bins_, offset[0], offset[1], offset[2], occluded,
+                                          static_cast<cl_uint>(cascade + 1), directions.hidden,
+                                          directions.closed);
+      directions.count_hidden->launch({n + 2, n + 2, 3 * kSweepBins},
+                                      {std::min(n + 2, kRowGroup), 1, 1});
+    }
     count_hidden_points_.value().set(occluded, static_cast<cl_uint>(cascade), hidden_);
     count_hidden_points_->launch({n + 1, n + 1, n + 1}, {std::min(n + 1, kRowGroup), 1, 1});
     transmittance_->add(hidden_);
@@ -328,17 +343,19 @@ bool Sweeper::light_border(Halo halo, std::size_t c, const std::vector<ClpvGrid>
   const cl_int upstream = form() == SweepForm::planes ? 3 * directions_of(directions.parts) *
                                                             bordered_plane_size(options_.grid)
                                                       : 0;
+  std::size_t slices = 3 * kSweepBins;
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, halo < kWhite ? directions.table : directions.white_table,
-               cascades_[c + 1].halos[entering(halo)], halo_of(options_.grid, offset), offset[0],
-               offset[1], offset[2], first_lit, plane_buffer_, upstream, border_);
+               cascades_[c + 1].halos[entering(halo)], directions.hidden,
+               directions.closed, halo_of(options_.grid, offset), offset[0], offset[1], offset[2],
+               first_lit, plane_buffer_, upstream, border_);
   } else {
     kernel.set(sky, sky_scale, plane_buffer_, upstream, border_);
+    slices = 9 * directions_of(directions.parts);
   }
   const std::size_t rows = options_.grid + 2, lanes = session_.device().lanes;
-  kernel.launch({(rows + lanes - 1) / lanes, rows, 9 * directions_of(directions.parts)},
-                {1, std::min(rows, kRowGroup), 1});
+  kernel.launch({(rows + lanes - 1) / lanes, rows, slices}, {1, std::min(rows, kRowGroup), 1});
   return true;
 }
 

@@ -44,10 +44,11 @@ class Sweeper {
   Sweeper(Session& session, const Basis& basis, const Transport& transport,
           const SweepOptions& options);
 
-  /// Computes the transmittance of a cascade's links. `geometry`: with SweepOptions::blocking,
-  /// (grid + 1)^3 samples. `occluded`: with SweepOptions::points, bits of visibility_masks() for
-  /// all cascades.
-  void set_blockers(std::size_t cascade, const Volume* geometry, const Buffer& occluded = {});
+  /// Computes the transmittance of a cascade's links, and what its border sees of the next coarser
+  /// cascade. `geometry`: with SweepOptions::blocking, (grid + 1)^3 samples. `occluded`: with
+  /// SweepOptions::points, bits of visibility_masks() for all cascades.
+  void set_blockers(std::size_t cascade, const std::vector<ClpvGrid>& grids,
+                    const Volume* geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
   /// `white`, `reflectors`: reflector_masks(), white and, for SweepOptions::bounces other than one,
@@ -82,6 +83,8 @@ class Sweeper {
     Kernel sweep;
     std::array<Buffer, kHalos> halos = {};  ///< border light of the next finer cascade
     std::optional<Kernel> border = {};      ///< from the coarser cascade; none for the coarsest
+    Buffer hidden = {}, closed = {};        ///< what the border sees of the coarser cascade
+    std::optional<Kernel> count_hidden = {};
     std::optional<Kernel> sky_border = {};  ///< from the sky; for the coarsest
     Buffer sky = {}, white_sky = {};  ///< swept_sky(); of the scene's sky, if any, and an even one
   };
