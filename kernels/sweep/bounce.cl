@@ -43,6 +43,14 @@
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
 
+// Numbers of a channel in swept light.
+#define CLPV_CHANNEL_BINS (CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME)
+
+// Tiles of the bins of a channel that are swept across x.
+typedef struct {
+  SweepTile bin[CLPV_AXIS_BINS];
+} XBins;
+
 // Numbers of the six faces of W cells, in the order of shared/reflectors.h.
 typedef struct {
   realW c[CLPV_CELL_FACES];
@@ -66,17 +74,17 @@ CLPV_INLINE FaceFluxes flux_along_grid(const Bins bins) {
   return flux;
 }
 
-// The same with the normal n in place of a.
-CLPV_INLINE realW flux_about(const Vec n, const Bins bins) {
-  realW flux = ZERO;
+// The same of `channels` with the normal n in place of a.
+CLPV_INLINE void flux_about(const Vec n, const Bins* bins, const int channels, realW* flux) {
+  for (int c = 0; c < channels; ++c) flux[c] = ZERO;
 #pragma unroll
   for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
     const realW x = (realW)(incident_weights[0][b] - incident_weights[1][b]),
                 y = (realW)(incident_weights[2][b] - incident_weights[3][b]),
-                z = (realW)(incident_weights[4][b] - incident_weights[5][b]);
-    flux = fma(fmax(fma(n.x, x, fma(n.y, y, n.z * z)), ZERO), bins.c[b], flux);
+                z = (realW)(incident_weights[4][b] - incident_weights[5][b]),
+                cosine = fmax(fma(n.x, x, fma(n.y, y, n.z * z)), ZERO);
+    for (int c = 0; c < channels; ++c) flux[c] = fma(cosine, bins[c].c[b], flux[c]);
   }
-  return flux;
 }
 
 // Tilts 1 / m - 1 of the faces' triangles against the grid; 0 along it, and on faces without one.
@@ -116,19 +124,24 @@ CLPV_INLINE Vec face_normal(const FaceFluxes area, const FaceFluxes tilt, const 
   return vec(n[0], n[1], n[2]);
 }
 
-// Fluxes on the faces: about the normals of their triangles, which do not receive what leaves them.
-CLPV_INLINE FaceFluxes incident_flux(const Bins bins, const FaceFluxes share,
-                                     const FaceFluxes area) {
+// Fluxes of `channels` on the faces: about the normals of their triangles, which do not receive
+// what leaves them.
+CLPV_INLINE void incident_fluxes(const Bins* bins, const int channels, const FaceFluxes share,
+                                 const FaceFluxes area, FaceFluxes* fluxes) {
   const FaceFluxes tilt = find_tilts(share);
   realW most = ZERO;
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a) most = fmax(most, tilt.c[a]);
-  if (no_lane(most > ZERO)) return flux_along_grid(bins);
-  FaceFluxes flux;
+  if (no_lane(most > ZERO)) {
+    for (int c = 0; c < channels; ++c) fluxes[c] = flux_along_grid(bins[c]);
+    return;
+  }
 #pragma unroll 1
-  for (int a = 0; a < CLPV_CELL_FACES; ++a)
-    flux.c[a] = flux_about(face_normal(area, tilt, a), bins);
-  return flux;
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+    realW flux[3];
+    flux_about(face_normal(area, tilt, a), bins, channels, flux);
+    for (int c = 0; c < channels; ++c) fluxes[c].c[a] = flux[c];
+  }
 }
 
 #define CLPV_VOLUME faces
@@ -215,7 +228,7 @@ CLPV_INLINE Tile find_tile(const int channel) {
   Tile t;
   t.x = W * (int)get_global_id(0), t.y = W * (int)get_global_id(1);
   t.z = (int)get_global_id(2) % CLPV_GRID, t.channel = channel;
-  t.first = t.channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
+  t.first = t.channel * CLPV_CHANNEL_BINS;
   t.rows = t.x < CLPV_GRID ? clamp(CLPV_GRID - t.y, 0, W) : 0;
   return t;
 }
@@ -223,12 +236,25 @@ CLPV_INLINE Tile find_tile(const int channel) {
 // Channel of a work-item that has one.
 CLPV_INLINE int own_channel(void) { return (int)get_global_id(2) / CLPV_GRID; }
 
-// Incident flux on the cells in row r of a tile of swept light.
+// Incident fluxes of `channels`, from the tile's own on, on the cells in row r of a tile of swept
+// light.
+CLPV_INLINE void load_incident_fluxes(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
+                                      const XBins* x_bins, const int channels, const Tile t,
+                                      const int r, FaceFluxes* fluxes) {
+  Bins bins[3];
+  for (int c = 0; c < channels; ++c)
+    bins[c] = load_bins(swept + t.first + c * CLPV_CHANNEL_BINS, x_bins[c].bin, r, t.x, t.y + r,
+                        t.z);
+  incident_fluxes(bins, channels, faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z),
+                  faces_load(reflectors, CLPV_REFLECTOR_AREA, t.x, t.y + r, t.z), fluxes);
+}
+
+// The same of one channel.
 CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
-                                          const SweepTile* x_bins, const Tile t, const int r) {
-  return incident_flux(load_bins(swept + t.first, x_bins, r, t.x, t.y + r, t.z),
-                       faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z),
-                       faces_load(reflectors, CLPV_REFLECTOR_AREA, t.x, t.y + r, t.z));
+                                          const XBins* x_bins, const Tile t, const int r) {
+  FaceFluxes flux;
+  load_incident_fluxes(swept, reflectors, x_bins, 1, t, r, &flux);
+  return flux;
 }
 
 // Light that leaves the faces of the cells in row r of a tile.
@@ -237,24 +263,46 @@ CLPV_INLINE Coefficients row_light(const FaceFluxes flux, CLPV_VOLUME_IN reflect
   return reflected_intensity(flux, faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z));
 }
 
+// Bit r: the cells in row r of a tile hold surfaces.
+CLPV_INLINE uint rows_with_surfaces(CLPV_VOLUME_IN reflectors, const Tile t) {
+  uint rows = 0;
+  for (int r = 0; r < t.rows; ++r) {
+    const FaceFluxes share = faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z);
+    realW sum = ZERO;
+#pragma unroll
+    for (int a = 0; a < CLPV_CELL_FACES; ++a) sum += share.c[a];
+    rows |= no_lane(sum > ZERO) ? 0 : 1u << r;
+  }
+  return rows;
+}
+
+CLPV_INLINE void load_all_x_bins(CLPV_BUFFER_IN swept, const Tile t, XBins* x_bins) {
+  for (int c = 0; c < 3; ++c)
+    load_x_bins(swept + c * CLPV_CHANNEL_BINS, t.x, t.y, t.z, x_bins[c].bin);
+}
+
 // `reflectance`: R or, from channel `first` on, E.
 __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                CLPV_VOLUME_IN reflectance, const int first,
                                CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources,
                                __global uchar* lit) {
   TileLight light = dark_light();
-  SweepTile bins[CLPV_AXIS_BINS];
-  for (int channel = 0; channel < 3; ++channel) {
-    const Tile t = find_tile(channel);
-    if (t.rows == 0) return;
-    load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
-    for (int r = 0; r < t.rows; ++r) {
-      const FaceFluxes flux =
-          reflect_flux(load_incident_flux(swept, reflectors, bins, t, r),
-                       faces_load(reflectance, first + channel, t.x, t.y + r, t.z));
-      set_light(&light, channel, r,
-                add_coefficients(row_light(flux, reflectors, t, r),
-                                 light_load(injected, channel, t.x, t.y + r, t.z)));
+  const Tile t = find_tile(0);
+  const uint rows = rows_with_surfaces(reflectors, t);
+  XBins bins[3];
+  if (rows != 0) load_all_x_bins(swept, t, bins);
+  for (int r = 0; r < t.rows; ++r) {
+    FaceFluxes incident[3];
+    const bool reflects = rows >> r & 1;
+    if (reflects) load_incident_fluxes(swept, reflectors, bins, 3, t, r, incident);
+    for (int channel = 0; channel < 3; ++channel) {
+      Coefficients c = light_load(injected, channel, t.x, t.y + r, t.z);
+      if (reflects) {
+        const FaceFluxes flux = reflect_flux(
+            incident[channel], faces_load(reflectance, first + channel, t.x, t.y + r, t.z));
+        c = add_coefficients(row_light(flux, reflectors, t, r), c);
+      }
+      set_light(&light, channel, r, c);
     }
   }
   write_sources(&light, sources, lit);
@@ -265,21 +313,29 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
                             CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources,
                             __global uchar* lit) {
   TileLight light = dark_light();
-  SweepTile first[CLPV_AXIS_BINS], second[CLPV_AXIS_BINS];
-  for (int channel = 0; channel < 3; ++channel) {
-    const Tile t = find_tile(channel);
-    if (t.rows == 0) return;
-    load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
-    load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
-    for (int r = 0; r < t.rows; ++r) {
-      const FaceFluxes before = load_incident_flux(first_swept, reflectors, first, t, r),
-                       after = load_incident_flux(second_swept, reflectors, second, t, r);
-      const FaceFluxes flux = series_flux(before, after,
-                                          faces_load(reflectors, channel, t.x, t.y + r, t.z),
-                                          faces_load(series, channel, t.x, t.y + r, t.z));
-      set_light(&light, channel, r,
-                add_coefficients(light_load(injected, channel, t.x, t.y + r, t.z),
-                                 row_light(flux, reflectors, t, r)));
+  const Tile t = find_tile(0);
+  const uint rows = rows_with_surfaces(reflectors, t);
+  XBins first[3], second[3];
+  if (rows != 0) {
+    load_all_x_bins(first_swept, t, first);
+    load_all_x_bins(second_swept, t, second);
+  }
+  for (int r = 0; r < t.rows; ++r) {
+    FaceFluxes before[3], after[3];
+    const bool reflects = rows >> r & 1;
+    if (reflects) {
+      load_incident_fluxes(first_swept, reflectors, first, 3, t, r, before);
+      load_incident_fluxes(second_swept, reflectors, second, 3, t, r, after);
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+      Coefficients c = light_load(injected, channel, t.x, t.y + r, t.z);
+      if (reflects) {
+        const FaceFluxes flux = series_flux(before[channel], after[channel],
+                                            faces_load(reflectors, channel, t.x, t.y + r, t.z),
+                                            faces_load(series, channel, t.x, t.y + r, t.z));
+        c = add_coefficients(c, row_light(flux, reflectors, t, r));
+      }
+      set_light(&light, channel, r, c);
     }
   }
   write_sources(&light, sources, lit);
@@ -316,11 +372,11 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
   if (t.rows == 0) return;
   const bool divided = t.channel != CLPV_REFLECTOR_SHARE && t.channel != CLPV_REFLECTOR_AREA;
   t.first = 0;
-  SweepTile bins[CLPV_AXIS_BINS];
-  load_x_bins(swept, t.x, t.y, t.z, bins);
+  XBins bins;
+  load_x_bins(swept, t.x, t.y, t.z, bins.bin);
   for (int r = 0; r < t.rows; ++r) {
     FaceFluxes faces = faces_load(reflectors, t.channel, t.x, t.y + r, t.z);
-    const FaceFluxes furnace = load_incident_flux(swept, reflectors, bins, t, r);
+    const FaceFluxes furnace = load_incident_flux(swept, reflectors, &bins, t, r);
 #pragma unroll
     for (int a = 0; a < CLPV_CELL_FACES && divided; ++a)
       faces.c[a] = faces.c[a] / furnace_divisor(furnace.c[a] * (1.0f / white));
@@ -332,11 +388,11 @@ __kernel void reflect_returned(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                CLPV_VOLUME_OUT returned) {
   const Tile t = find_tile(own_channel());
   if (t.rows == 0) return;
-  SweepTile bins[CLPV_AXIS_BINS];
-  load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
+  XBins bins;
+  load_x_bins(swept + t.first, t.x, t.y, t.z, bins.bin);
   for (int r = 0; r < t.rows; ++r)
     faces_store(returned, t.channel, t.x, t.y + r, t.z,
-                reflect_flux(load_incident_flux(swept, reflectors, bins, t, r),
+                reflect_flux(load_incident_flux(swept, reflectors, &bins, t, r),
                              faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
 }
 
@@ -344,12 +400,12 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
                          CLPV_VOLUME_OUT series) {
   const Tile t = find_tile(own_channel());
   if (t.rows == 0) return;
-  SweepTile bins[CLPV_AXIS_BINS];
-  load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
+  XBins bins;
+  load_x_bins(swept + t.first, t.x, t.y, t.z, bins.bin);
   for (int r = 0; r < t.rows; ++r) {
     const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
-                     incident = load_incident_flux(swept, reflectors, bins, t, r),
+                     incident = load_incident_flux(swept, reflectors, &bins, t, r),
                      second = reflect_flux(incident, reflectance),
                      white = faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z),
                      ratio = find_ratios(first, second, reflectance, white);

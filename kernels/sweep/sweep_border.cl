@@ -137,6 +137,7 @@ CLPV_INLINE void read_neighbours(CLPV_BUFFER_IN from, const int at, const int c,
 //       hidden, closed  of count_hidden_at_border
 //       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells
 //       first_lit     channels below have a dark border
+//       face_step     1; 3: only the planes
 // Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
 //       border        D [W/sr] in the rows and columns upstream of each plane
 // A work-item computes W cells of a row of one face, from the cell before the grid on, for all
@@ -147,10 +148,12 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins,
                            CLPV_BUFFER_IN halo_light, __global const uint* hidden,
                            __global const float* closed,
                            const ClpvSweepHalo halo, const int dx, const int dy, const int dz,
-                           const int first_lit, __global float* plane_buffer, const int upstream,
+                           const int first_lit, const int face_step,
+                           __global float* plane_buffer, const int upstream,
                            CLPV_BUFFER_OUT border) {
   const int column = W * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1,
-            face_of_bin = (int)get_global_id(2), bin = face_of_bin / 3, face = face_of_bin % 3;
+            face_of_bin = (int)get_global_id(2) * face_step, bin = face_of_bin / 3,
+            face = face_of_bin % 3;
   if (column > CLPV_GRID || row > CLPV_GRID) return;
   const FaceCell cell = face_cell(bins + bin, face, row, column, dx, dy, dz);
   const float across = upper_weight(cell.layer), along = upper_weight(cell.row);

@@ -7,16 +7,20 @@ A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its
 double-sided sheet, or two sheets some cells of 12.5 / 32 m apart. `turned` is turned by 20 degrees
 about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a door between them,
 one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs.
-Each is lit by a sun, an even sky or a lamp outside.
+`hall` is 14 m wide, more than the finest cascade, `windows` the same with three windows. Each is lit by a sun, an even sky or a lamp outside.
 """
 import itertools
 import json
 import math
 
+import numpy as np
+
 from . import native, output
 
 CELL = 12.5 / 32
 LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
+HALL, WALL = ((-7, 0, -7), (7, 4, 7)), 0.3  # inside, and thickness of its walls [m]
+WINDOWS = [((-7.5, 1, -5), (-6.5, 3, -3)), ((-7.5, 1, 2), (-6.5, 3, 4)), ((-1, 1, 6.5), (1, 3, 7.5))]
 GREY = (0.8, 0.8, 0.8)
 TURN = 20  # degrees
 STEP = 2.0**-13  # of positions [m], so that the last bit of a machine's sine changes nothing
@@ -87,6 +91,33 @@ def legs():
     return faces
 
 
+def quads(air, solid):
+    """Corners of the walls' faces (n, 4, 3), counter-clockwise seen from the air: each lies between
+    a cell of the boxes' planes that is solid and one that is not. `air` are boxes cut out of the
+    box `solid`, or out of everything."""
+    boxes = np.array([*air, *([solid] if solid else [])], float).reshape(-1, 2, 3)
+    planes = [np.unique(boxes[..., axis]) for axis in range(3)]
+    centres = np.stack(np.meshgrid(*((p[1:] + p[:-1]) / 2 for p in planes), indexing="ij"), axis=-1)
+    within = [((centres > low) & (centres < high)).all(axis=-1) for low, high in boxes]
+    full = within.pop() if solid else np.ones(centres.shape[:3], bool)
+    full = np.pad(full & ~np.any(within, axis=0), 1, constant_values=not solid)
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        step = np.diff(full.astype(int), axis=axis)
+        for cell in np.argwhere(step):
+            corners = np.empty((4, 3))
+            corners[:, axis] = planes[axis][cell[axis]]
+            corners[:, u] = planes[u][cell[u] - 1 + np.array([0, 1, 1, 0])]
+            corners[:, v] = planes[v][cell[v] - 1 + np.array([0, 0, 1, 1])]
+            yield corners if step[tuple(cell)] < 0 else corners[::-1]
+
+
+def hall(windows):
+    low, high = HALL
+    outer = [a - WALL for a in low], [a + WALL for a in high]
+    return [face.tolist() for face in quads([HALL, *windows], outer)]
+
+
 def shapes():
     yield from ((name, walls(thickness)) for name, thickness in WALLS.items())
     yield "turned", [turned(face, TURN) for face in walls(None)]
@@ -94,19 +125,21 @@ def shapes():
     yield "door", two_rooms()
     yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])
     yield "legs", legs()
+    yield "hall", hall([])
+    yield "windows", hall(WINDOWS)
 
 
 def inner_points(shape, count):
     """(point, normal) on the faces inside, `count`^2 a face. Legs have a floor only."""
     degrees = TURN if shape == "turned" else 0
+    low, high = HALL if shape in ("hall", "windows") else (LOWER, UPPER)
     for axis, side, k in itertools.product(range(3), (0, 1), range(count**2)):
         if shape == "legs" and (axis, side) != (1, 0) or shape == "corner" and side == 1:
             continue
         p, n = [0.0] * 3, [0] * 3
-        p[axis], n[axis] = (LOWER, UPPER)[side][axis], 1 - 2 * side
+        p[axis], n[axis] = (low, high)[side][axis], 1 - 2 * side
         for along, i in (((axis + 1) % 3, k % count), ((axis + 2) % 3, k // count)):
-            low, high = LOWER[along], UPPER[along]
-            p[along] = low + (high - low) * (i + 0.5) / count
+            p[along] = low[along] + (high[along] - low[along]) * (i + 0.5) / count
         yield turned([p, n], degrees)
 
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Rooms that are turned against the grid, beside path tracing: results/docs/rooms.json and a
-picture, for scripts/measure. ROOMS of rows.json has them: `air` are boxes cut out of the box
-`solid`, or out of everything (one sheet, seen from inside)."""
+picture, for scripts/measure. ROOMS of rows.json has them: `air` and `solid` of
+leak_scenes.quads() (without `solid` one sheet, seen from inside)."""
 import itertools
 import math
 
 import numpy as np
 
 from . import native
-from .leak_scenes import turned
+from .leak_scenes import quads, turned
 from .rows import ROOMS
 from .sheets import sheet
 
@@ -17,26 +17,6 @@ clpv = native()
 SIZE, PATHS = (120, 68), 256  # of a row of the table; paths a pixel
 SHOWN = 240, 135  # pixels of a tile of the picture
 CASCADES = {"cascades": 3, "cascade_size": 12.5}
-
-
-def quads(air, solid):
-    """Corners of the walls' faces (n, 4, 3), counter-clockwise seen from the air: each lies between
-    a cell of the boxes' planes that is solid and one that is not."""
-    boxes = np.array([*air, *([solid] if solid else [])], float).reshape(-1, 2, 3)
-    planes = [np.unique(boxes[..., axis]) for axis in range(3)]
-    centres = np.stack(np.meshgrid(*((p[1:] + p[:-1]) / 2 for p in planes), indexing="ij"), axis=-1)
-    within = [((centres > low) & (centres < high)).all(axis=-1) for low, high in boxes]
-    full = within.pop() if solid else np.ones(centres.shape[:3], bool)
-    full = np.pad(full & ~np.any(within, axis=0), 1, constant_values=not solid)
-    for axis in range(3):
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        step = np.diff(full.astype(int), axis=axis)
-        for cell in np.argwhere(step):
-            corners = np.empty((4, 3))
-            corners[:, axis] = planes[axis][cell[axis]]
-            corners[:, u] = planes[u][cell[u] - 1 + np.array([0, 1, 1, 0])]
-            corners[:, v] = planes[v][cell[v] - 1 + np.array([0, 0, 1, 1])]
-            yield corners if step[tuple(cell)] < 0 else corners[::-1]
 
 
 def scene_of(room, degrees):

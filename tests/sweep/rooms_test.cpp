@@ -379,11 +379,12 @@ SceneData sealed_room(float degrees, const glm::vec3& offset, float gap = 0,
   return scene;
 }
 
-/// Mean irradiance inside over that of the ground.
-double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces, Near near = Near::off) {
+/// Mean irradiance inside over that of the ground. `size`: edge of the finest cascade [m].
+double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces, Near near = Near::off,
+            float size = 16 * kCell) {
   RenderOptions options = small_sweep();
   options.bounces = bounces, options.near = near;
-  options.cascades = 2, options.cascade_size = 16 * kCell;
+  options.cascades = size < kEdge ? 3 : 2, options.cascade_size = size;
   options.width = 32, options.height = 18, options.rsm_size = 128, options.shadow_size = 256;
   Frame frame(test_session(), scene, options);
   SceneCamera camera = camera_at(eye, {1, -0.2f, 1.2f});
@@ -404,6 +405,21 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
       EXPECT_LT(leak(scene, offset + eye, Bounces::all, Near::traced), 0.025) << shift;
     }
     EXPECT_LT(leak(sealed_room(degrees, {}, kCell, axis), eye, Bounces::all), 0.004) << degrees;
+  }
+}
+
+// At a cascade's border light comes from the coarser cells that the border's cells see; trilinear
+// interpolation lets in up to 0.013.
+TEST(Leaks, ARoomWiderThanTheFinestCascadeIsDark) {
+  for (const float degrees : {0.0f, 20.0f, 40.0f}) {
+    for (const float size : {2.6f, 3.4f}) {
+      SceneData scene = sealed_room(degrees, {}, kCell);
+      scene.lights.clear();
+      const double even = 1 / std::numbers::pi / glm::length(kSun);
+      scene.sky = std::make_shared<Sky>(constant_sky(glm::vec3(even)));
+      EXPECT_LT(leak(scene, {-1, 1.6f, -1.2f}, Bounces::all, Near::off, size), 0.001)
+          << degrees << ' ' << size;
+    }
   }
 }
 

@@ -295,11 +295,12 @@ void Sweeper::run(const SweepStep& step, Halo halo, const SweepInput& input) {
   if (step.scattered) medium_->scatter_swept(swept_);
   set_sources(step, input);
   const float cell = input.grids[input.cascade].cell;
-  // Groups leave the boundary condition as it is: it serves all sweeps that take the same light.
-  const bool stands = form() == SweepForm::groups && bordered_ == entering(halo);
-  const bool lit =
-      stands || light_border(halo, input.cascade, input.grids, cascades_[input.cascade].sky,
-                             input.sky_scale * (cell * cell));
+  // The boundary condition serves all sweeps that take the same light. Groups leave it as it is,
+  // others only its rows and columns.
+  const bool stands = bordered_ == entering(halo);
+  const bool lit = (stands && form() == SweepForm::groups) ||
+                   light_border(halo, input.cascade, input.grids, cascades_[input.cascade].sky,
+                                input.sky_scale * (cell * cell), 0, stands);
   bordered_ = lit ? std::optional(entering(halo)) : std::nullopt;
   const ClpvSweepHalo stored = prepare_halo(halo, input.cascade, input.grids);
   if (last_swept_.exists()) std::swap(swept_, last_swept_);
@@ -333,9 +334,10 @@ void Sweeper::set_sources(const SweepStep& step, const SweepInput& input) {
 }
 
 /// Sets the boundary condition of a cascade from the next coarser one, or from `sky` times
-/// `sky_scale`. Returns false, and sets nothing, if no light enters.
+/// `sky_scale`. Returns false, and sets nothing, if no light enters. `rows_stand`: sets at least
+/// the planes.
 bool Sweeper::light_border(Halo halo, std::size_t c, const std::vector<ClpvGrid>& grids,
-                           const Buffer& sky, float sky_scale, cl_int first_lit) {
+                           const Buffer& sky, float sky_scale, cl_int first_lit, bool rows_stand) {
   Directions& directions = cascades_[c];
   if (!directions.border && !sky.exists()) return false;
   Kernel& kernel = directions.border ? *directions.border : *directions.sky_border;
@@ -343,16 +345,17 @@ bool Sweeper::light_border(Halo halo, std::size_t c, const std::vector<ClpvGrid>
   const cl_int upstream = form() == SweepForm::planes ? 3 * directions_of(directions.parts) *
                                                             bordered_plane_size(options_.grid)
                                                       : 0;
-  std::size_t slices = 3 * kSweepBins;
+  std::size_t slices = 9 * directions_of(directions.parts);
   if (directions.border) {
+    const cl_int face_step = rows_stand ? 3 : 1;
+    slices = 3 * kSweepBins / face_step;
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, halo < kWhite ? directions.table : directions.white_table,
                cascades_[c + 1].halos[entering(halo)], directions.hidden,
                directions.closed, halo_of(options_.grid, offset), offset[0], offset[1], offset[2],
-               first_lit, plane_buffer_, upstream, border_);
+               first_lit, face_step, plane_buffer_, upstream, border_);
   } else {
     kernel.set(sky, sky_scale, plane_buffer_, upstream, border_);
-    slices = 9 * directions_of(directions.parts);
   }
   const std::size_t rows = options_.grid + 2, lanes = session_.device().lanes;
   kernel.launch({(rows + lanes - 1) / lanes, rows, slices}, {1, std::min(rows, kRowGroup), 1});

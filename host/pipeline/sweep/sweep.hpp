@@ -95,7 +95,8 @@ class Sweeper {
   void set_sources(const SweepStep& step, const SweepInput& input);
   void sweep_white(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   bool light_border(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids,
-                    const Buffer& sky, float sky_scale, cl_int first_lit = 0);
+                    const Buffer& sky, float sky_scale, cl_int first_lit = 0,
+                    bool rows_stand = false);
   void darken_border(const Directions& directions);
   ClpvSweepHalo prepare_halo(Halo halo, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   void launch(Halo halo, std::size_t cascade, const ClpvSweepHalo& stored, bool lit,
