@@ -176,11 +176,12 @@ class Sweep {
     double sum = 0, weights = 0;
     int both = 0, either = 0;
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 centre = glm::ivec3(glm::floor(at)) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2),
+          centre = glm::ivec3(glm::floor(at)) + up;
       const glm::dvec3 w = 1.0 - glm::abs(at - glm::dvec3(centre));
       const int seen = seen_points(occluded, n_, at, centre);
-      weights += w.x * w.y * w.z * seen;
-      sum += w.x * w.y * w.z * seen * field.cell(channel, centre)[0];
+      const double weight = w.x * w.y * w.z * seen;
+      weights += weight, sum += weight * field.cell(channel, centre)[0];
       if (glm::any(glm::greaterThan(glm::abs(inner - glm::dvec3(centre)), glm::dvec3(1)))) continue;
       const int there = seen_points(occluded, n_, inner, centre);
       both += std::min(seen, there), either += std::max(seen, there);

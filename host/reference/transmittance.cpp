@@ -71,10 +71,10 @@ int seen_points(const std::vector<std::uint8_t>* occluded, int n, const glm::dve
   const glm::ivec3 cube(glm::floor(at)), up = centre - cube;
   const bool within = glm::clamp(cube, 0, std::max(n - 2, 0)) == cube;
   if (occluded == nullptr || !within) return 8;
+  const glm::ivec3 octant(2.0 * (at - glm::floor(at)));
   int seen = 0;
   for (int i = 0; i < 8; ++i) {
-    const glm::ivec3 place = 2 * glm::ivec3(2.0 * (at - glm::floor(at))) +
-                             glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+    const glm::ivec3 place = 2 * octant + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
     const std::size_t point = first_point(n, cube) + (place.z * 4 + place.y) * 4 + place.x;
     seen += ((*occluded)[point] >> (up.x + 2 * up.y + 4 * up.z) & 1) == 0;
   }

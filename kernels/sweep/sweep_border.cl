@@ -173,13 +173,13 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins,
 #pragma unroll
   for (int k = 0; k < CLPV_CENTRES; ++k) weights[k] *= scale;
   const int pitch = halo_pitch(halo.side), next = halo.side * pitch;
-  const int at = halo_index(halo, 0, face, 0, lower_cell(cell.row) - halo_first(halo, cell.row_axis),
-                            lower_cell(cell.column) - halo_first(halo, cell.column_axis));
+  const int r = lower_cell(cell.row) - halo_first(halo, cell.row_axis),
+            c = lower_cell(cell.column) - halo_first(halo, cell.column_axis);
   for (int channel = 0; channel < 3; ++channel) {
     for (int part = 0; part < CLPV_PARTS; ++part) {
       __constant const ClpvSweepDirection* direction = directions + bin * CLPV_PARTS + part;
       const int coarser = (bin * 3 + channel) * CLPV_COARSER_PARTS + direction->coarser;
-      const int first = at + halo_index(halo, coarser, 0, 0, 0, 0);
+      const int first = halo_index(halo, coarser, face, 0, r, c);
       realW in = ZERO;
 #pragma unroll
       for (int k = 0; k < CLPV_CENTRES; k += 2) {

@@ -195,10 +195,9 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, std::size_t cas
         border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
     border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);
     made.border.emplace(session_, border, "sweep_border");
+    const std::size_t words = 3 * kSweepBins * bordered_plane_size(options_.grid);
     for (Buffer* each : {&made.hidden, &made.closed})
-      *each = zeroed_buffer(
-          session_, 3 * kSweepBins * bordered_plane_size(options_.grid) * sizeof(cl_uint),
-          "what the border of a cascade sees");
+      *each = zeroed_buffer(session_, words * sizeof(cl_uint), "what a cascade's border sees");
     if (options_.points) made.count_hidden.emplace(session_, border, "count_hidden_at_border");
   } else {
     Sky even;
@@ -351,9 +350,9 @@ bool Sweeper::light_border(Halo halo, std::size_t c, const std::vector<ClpvGrid>
     slices = 3 * kSweepBins / face_step;
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, halo < kWhite ? directions.table : directions.white_table,
-               cascades_[c + 1].halos[entering(halo)], directions.hidden,
-               directions.closed, halo_of(options_.grid, offset), offset[0], offset[1], offset[2],
-               first_lit, face_step, plane_buffer_, upstream, border_);
+               cascades_[c + 1].halos[entering(halo)], directions.hidden, directions.closed,
+               halo_of(options_.grid, offset), offset[0], offset[1], offset[2], first_lit,
+               face_step, plane_buffer_, upstream, border_);
   } else {
     kernel.set(sky, sky_scale, plane_buffer_, upstream, border_);
   }

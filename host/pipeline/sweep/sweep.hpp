@@ -47,8 +47,8 @@ class Sweeper {
   /// Computes the transmittance of a cascade's links, and what its border sees of the next coarser
   /// cascade. `geometry`: with SweepOptions::blocking, (grid + 1)^3 samples. `occluded`: with
   /// SweepOptions::points, bits of visibility_masks() for all cascades.
-  void set_blockers(std::size_t cascade, const std::vector<ClpvGrid>& grids,
-                    const Volume* geometry, const Buffer& occluded = {});
+  void set_blockers(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume* geometry,
+                    const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
   /// `white`, `reflectors`: reflector_masks(), white and, for SweepOptions::bounces other than one,
