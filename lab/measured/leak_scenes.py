@@ -19,8 +19,8 @@ from . import native, output
 
 CELL = 12.5 / 32
 LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
-HALL, WALL = ((-7, 0, -7), (7, 4, 7)), 0.3  # inside, and thickness of its walls [m]
-WINDOWS = [((-7.5, 1, -5), (-6.5, 3, -3)), ((-7.5, 1, 2), (-6.5, 3, 4)), ((-1, 1, 6.5), (1, 3, 7.5))]
+HALL, WALL = ((-3, 0, -7), (11, 4, 7)), 0.3  # inside, and thickness of its walls [m]
+WINDOWS = [((-3.5, 1, -5), (-2.5, 3, -3)), ((-3.5, 1, 2), (-2.5, 3, 4)), ((3, 1, 6.5), (5, 3, 7.5))]
 GREY = (0.8, 0.8, 0.8)
 TURN = 20  # degrees
 STEP = 2.0**-13  # of positions [m], so that the last bit of a machine's sine changes nothing
