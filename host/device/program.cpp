@@ -100,34 +100,6 @@ void append_file(std::string& out, const std::string& name, int depth) {
   if (once) out += "#endif\n";
 }
 
-}  // namespace
-
-void record_kernel_files() {
-  const char* folder = std::getenv("CLPV_KERNEL_DIR");
-  if (folder == nullptr || *folder == '\0') return;
-  for (const auto& [name, embedded] : detail::embedded_kernel_files())
-    InputRecord::add({"CLPV_KERNEL_DIR", std::filesystem::path(folder) / name});
-}
-
-std::string kernel_file(const std::string& name) {
-  auto text = find_kernel_file(name);
-  if (!text) throw Error(ExitCode::run_time, "no kernel file named '{}'", name);
-  return *std::move(text);
-}
-
-void add_kernels(Fingerprint& print) {
-  std::set<std::string> added;
-  for (const auto& [name, text] : detail::embedded_kernel_files()) add_file(print, name, added);
-}
-
-std::string assemble_kernel_source(const std::string& name) {
-  std::string source;
-  append_file(source, name, 0);
-  return source;
-}
-
-namespace {
-
 /// Retries of a build that fails without an error in the text. PoCL 3.1 fails so occasionally while
 /// another process compiles the same text, because both write to PoCL's cache. Waits double from
 /// kRetryWait on.
@@ -184,6 +156,30 @@ bool lacks_images_in_standard(const cl::Context& context, const Device& device) 
 }
 
 }  // namespace
+
+void record_kernel_files() {
+  const char* folder = std::getenv("CLPV_KERNEL_DIR");
+  if (folder == nullptr || *folder == '\0') return;
+  for (const auto& [name, embedded] : detail::embedded_kernel_files())
+    InputRecord::add({"CLPV_KERNEL_DIR", std::filesystem::path(folder) / name});
+}
+
+std::string kernel_file(const std::string& name) {
+  auto text = find_kernel_file(name);
+  if (!text) throw Error(ExitCode::run_time, "no kernel file named '{}'", name);
+  return *std::move(text);
+}
+
+void add_kernels(Fingerprint& print) {
+  std::set<std::string> added;
+  for (const auto& [name, text] : detail::embedded_kernel_files()) add_file(print, name, added);
+}
+
+std::string assemble_kernel_source(const std::string& name) {
+  std::string source;
+  append_file(source, name, 0);
+  return source;
+}
 
 std::string program_text(const ProgramSource& source) {
   std::string text;

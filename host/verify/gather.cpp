@@ -247,30 +247,8 @@ Deviation compare_near(Session& session, const NearCase& variant) {
                         wanted.uncertain);
 }
 
-}  // namespace
-
-Cases near_cases(const CheckScope& scope) {
-  Cases cases;
-  const auto add = [&](const NearCase& variant) {
-    cases.push_back(deviation_case(Stage::near, variant.name, [variant](Session& session) {
-      return compare_near(session, variant);
-    }));
-  };
-  add({.name = "quarter", .step = 4});
-  add({.name = "reflects", .reflects = true});
-  if (!scope.thorough) return cases;
-  add({.name = "full"});
-  add({.name = "half", .step = 2});
-  add({.name = "eighth, 2 rays", .step = 8, .rays = 2});
-  add({.name = "all cells", .gather = Gathering::all});
-  add({.name = "half numbers", .format = {Layout::soa, Storage::float16}});
-  return cases;
-}
-
 // Light scattered by a medium: kernels against CPU reference, under a sun, a spot and a point light
 // and in random light of two cascades.
-
-namespace {
 
 constexpr int kMediumGrid = 9, kMediumCascades = 2;
 constexpr double kMediumFinestEdge = 6;  // [m]
@@ -306,6 +284,24 @@ Deviation compare_medium(Session& session, const ClpvMedium& medium) {
 }
 
 }  // namespace
+
+Cases near_cases(const CheckScope& scope) {
+  Cases cases;
+  const auto add = [&](const NearCase& variant) {
+    cases.push_back(deviation_case(Stage::near, variant.name, [variant](Session& session) {
+      return compare_near(session, variant);
+    }));
+  };
+  add({.name = "quarter", .step = 4});
+  add({.name = "reflects", .reflects = true});
+  if (!scope.thorough) return cases;
+  add({.name = "full"});
+  add({.name = "half", .step = 2});
+  add({.name = "eighth, 2 rays", .step = 8, .rays = 2});
+  add({.name = "all cells", .gather = Gathering::all});
+  add({.name = "half numbers", .format = {Layout::soa, Storage::float16}});
+  return cases;
+}
 
 Cases medium_cases(const CheckScope&) {
   return {deviation_case(Stage::medium, "fog",
