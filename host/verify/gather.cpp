@@ -48,15 +48,11 @@ struct GatherWork {
   std::size_t bytes() const { return pixels() * sizeof(cl_float4); }
 };
 
-/// Returns true if the device's image filter interpolates.
-bool filtered_by_device(const GatherOptions& options, TransportKind transport) {
-  return options.format.layout == Layout::image && options.filtered &&
-         options.gather == Gathering::all && has_faces(transport);
-}
-
 std::string_view compared_as(const GatherOptions& options, TransportKind transport) {
   if (options.gather == Gathering::visible) return "gather-visible";
-  return filtered_by_device(options, transport) ? "gather-filter" : "gather";
+  const bool by_device =
+      options.format.layout == Layout::image && options.filtered && has_faces(transport);
+  return by_device ? "gather-filter" : "gather";
 }
 
 /// Expected irradiance of the compared pixels, four numbers each.
