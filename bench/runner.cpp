@@ -64,13 +64,6 @@ double run_once(Session& session, CaseRun& run) {
   return ms;
 }
 
-/// Peak memory of the process so far [bytes].
-std::size_t peak_host_bytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
 /// Sets up a case and runs it once. Its row becomes `unsupported` if the device lacks a capability.
 void prepare(Session& session, const Case& source, CaseRun& run) {
   run.row = source.row;
@@ -106,7 +99,9 @@ void complete_row(CaseRun& run) {
   row.wall_ms = statistics_of(run.wall_ms).median;
   row.cpu_ms /= static_cast<double>(row.samples_ms.size());
   if (run.job.count) row.host = run.job.count();
-  row.host_bytes = peak_host_bytes();
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  row.host_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // the peak so far
   verify(run);
 }
 

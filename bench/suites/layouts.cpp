@@ -64,6 +64,26 @@ std::string layouts_table(const std::vector<Row>& rows) {
          "\nvs image/half: speed-up over half-float images.\n";
 }
 
+// Suite `bases`: the cost of every basis, with both lobes.
+
+Group cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
+               const std::string& basis) {
+  Group cases;
+  const Problem usual = basis_problem(options, basis);
+  cases.push_back(stage_case(bench, "bases", kInject, usual));
+  Problem problem = usual;
+  for (const LobeKind lobe : values_of<LobeKind>()) {
+    for (const bool occlusion : {false, true}) {
+      problem.options.lobe = lobe, problem.options.blockers = blockers_if(occlusion);
+      cases.push_back(stage_case(bench, "bases", kPropagate, problem));
+    }
+  }
+  // The sweep's blockers are areas and do not depend on the basis: no case with occlusion.
+  cases.push_back(stage_case(bench, "bases", kSweep, usual));
+  cases.push_back(stage_case(bench, "bases", kGather, usual));
+  return cases;
+}
+
 }  // namespace
 
 Suite layouts_suite() {
@@ -91,30 +111,6 @@ Suite layouts_suite() {
           },
           layouts_table};
 }
-
-// Suite `bases`: the cost of every basis, with both lobes.
-
-namespace {
-
-Group cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
-               const std::string& basis) {
-  Group cases;
-  const Problem usual = basis_problem(options, basis);
-  cases.push_back(stage_case(bench, "bases", kInject, usual));
-  Problem problem = usual;
-  for (const LobeKind lobe : values_of<LobeKind>()) {
-    for (const bool occlusion : {false, true}) {
-      problem.options.lobe = lobe, problem.options.blockers = blockers_if(occlusion);
-      cases.push_back(stage_case(bench, "bases", kPropagate, problem));
-    }
-  }
-  // The sweep's blockers are areas and do not depend on the basis: no case with occlusion.
-  cases.push_back(stage_case(bench, "bases", kSweep, usual));
-  cases.push_back(stage_case(bench, "bases", kGather, usual));
-  return cases;
-}
-
-}  // namespace
 
 Suite bases_suite() {
   return {"bases",

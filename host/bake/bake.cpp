@@ -229,40 +229,6 @@ class Traced : public ProbeSource {
   double level_ = -1;
 };
 
-}  // namespace
-
-std::unique_ptr<ProbeSource> swept_light(Session& session, const SceneData& scene,
-                                         const SceneCamera& camera, const RenderOptions& options,
-                                         const ProbeGrid& grid,
-                                         const std::vector<ProbeFormat>& formats,
-                                         pathtracer::PointTracer& tracer) {
-  return std::make_unique<Swept>(session, scene, camera, options, grid, formats, tracer);
-}
-
-std::unique_ptr<ProbeSource> traced_light(pathtracer::PointTracer& tracer, const ProbeGrid& grid,
-                                          const std::vector<ProbeFormat>& formats,
-                                          bool fixed_samples) {
-  return std::make_unique<Traced>(tracer, grid, formats, fixed_samples);
-}
-
-Moments joined(const std::vector<ProbeFormat>& formats) {
-  std::vector<Moments> parts;
-  std::size_t count = 0;
-  for (const ProbeFormat& format : formats) {
-    parts.push_back(format.moments);
-    count += format.moments.count;
-  }
-  return {count, [parts](const glm::dvec3& w, std::span<double> g) {
-            std::size_t first = 0;
-            for (const Moments& part : parts) {
-              part.weights(w, g.subspan(first, part.count));
-              first += part.count;
-            }
-          }};
-}
-
-namespace {
-
 constexpr double kBacks = 0.25;                    // share of all directions
 constexpr std::uint64_t kMaxOldBlocks = 1u << 30;  // bytes
 constexpr std::chrono::hours kMaxAge(24 * 30);
@@ -338,6 +304,36 @@ void dilate_into(const ProbeGrid& grid, std::size_t n, std::vector<std::uint8_t>
 }
 
 }  // namespace
+
+std::unique_ptr<ProbeSource> swept_light(Session& session, const SceneData& scene,
+                                         const SceneCamera& camera, const RenderOptions& options,
+                                         const ProbeGrid& grid,
+                                         const std::vector<ProbeFormat>& formats,
+                                         pathtracer::PointTracer& tracer) {
+  return std::make_unique<Swept>(session, scene, camera, options, grid, formats, tracer);
+}
+
+std::unique_ptr<ProbeSource> traced_light(pathtracer::PointTracer& tracer, const ProbeGrid& grid,
+                                          const std::vector<ProbeFormat>& formats,
+                                          bool fixed_samples) {
+  return std::make_unique<Traced>(tracer, grid, formats, fixed_samples);
+}
+
+Moments joined(const std::vector<ProbeFormat>& formats) {
+  std::vector<Moments> parts;
+  std::size_t count = 0;
+  for (const ProbeFormat& format : formats) {
+    parts.push_back(format.moments);
+    count += format.moments.count;
+  }
+  return {count, [parts](const glm::dvec3& w, std::span<double> g) {
+            std::size_t first = 0;
+            for (const Moments& part : parts) {
+              part.weights(w, g.subspan(first, part.count));
+              first += part.count;
+            }
+          }};
+}
 
 BlockCache::BlockCache(const std::optional<std::filesystem::path>& folder, std::string key)
     : key_(std::move(key)) {

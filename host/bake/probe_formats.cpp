@@ -118,9 +118,6 @@ struct Bands {
     const double to_flow = std::sqrt(1 / (12 * pi));
     flow = {c[3] * to_flow, c[1] * to_flow, c[2] * to_flow};
   }
-  glm::dvec3 flow_of(int channel) const {
-    return {flow[0][channel], flow[1][channel], flow[2][channel]};
-  }
 };
 
 /// pi R (a + (1 - a) (p + 1) q^p), q = (1 + cos) / 2, p = 1 + 2 r, a = (1 - r) / (1 + r), r = |R_1|
@@ -130,7 +127,8 @@ glm::dvec3 geomerics(Vectors c, const glm::dvec3& n) {
   glm::dvec3 e(0);
   for (int channel = 0; channel < 3; ++channel) {
     const double mean = bands.mean[channel];
-    const glm::dvec3 flow = bands.flow_of(channel);
+    const auto& [x, y, z] = bands.flow;
+    const glm::dvec3 flow(x[channel], y[channel], z[channel]);
     const double length = glm::length(flow);
     if (!(mean > 0)) continue;
     const double r = std::min(length / mean, 1.0), p = 1 + 2 * r, a = (1 - r) / (1 + r);

@@ -19,8 +19,6 @@
 
 namespace clpv::bake_command {
 
-namespace {
-
 /// '-' for what is unknown.
 std::string decimal(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
@@ -46,8 +44,6 @@ std::string given_row(const std::string& name, const std::string& numbers, const
   return fmt::format("{:<18}{:>8}{:>7}{:>12.5g}{:>9}\n", name, numbers, bytes, mean,
                      decimal(100 * nrmse, 1));
 }
-
-}  // namespace
 
 Check::Check(const Options& options, pathtracer::PointTracer& tracer, const ProbeGrid& grid,
              std::vector<SurfacePoint> given)
@@ -117,8 +113,6 @@ void Check::report(const ProbeGrid& grid) const {
   say_unknown("on surfaces", surfaces_);
   say_unknown("in the air", air_);
 }
-
-namespace {
 
 nlohmann::json array_of(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
@@ -193,8 +187,6 @@ std::string npz_of(const ProbeFormat& format, const BakedProbes& baked) {
                     {"meaning", npy_bytes(format.meaning)}});
 }
 
-}  // namespace
-
 std::string suffix_of(const Options& options) {
   return std::filesystem::path(options.output).extension().string();
 }
@@ -219,8 +211,6 @@ void write_probes(const Options& options, const SceneData& scene, const ProbeFor
   data.commit();
   text.commit();
 }
-
-namespace {
 
 constexpr double kMaxProbes = 1 << 22;
 constexpr double kMaxBytes = 1 << 30;  // all coefficients, as 32-bit floats
@@ -253,8 +243,6 @@ void set_bounds(const Options& options, const SceneData& scene, ProbeGrid& grid)
                 grid.lower[axis], grid.upper[axis], "xyz"[axis], bounds::kCoordinate);
   }
 }
-
-}  // namespace
 
 ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t numbers) {
   ProbeGrid grid;

@@ -35,15 +35,11 @@ std::regex parse_filter(const std::string& text) {
   }
 }
 
-/// Name of the timed scene and camera: "sponza, camera curtains".
-std::string subject_of(const bench::SuiteOptions& options) {
-  return fmt::format("{}, camera {}", options.scene->name,
-                     options.scene->camera(options.camera).name);
-}
-
 std::string as_text(const Options& options, std::string_view format, const bench::Suite& suite,
                     const Session& session, const std::vector<bench::Row>& rows) {
-  const std::string scene = subject_of(options.bench.suite);
+  const bench::SuiteOptions& timed = options.bench.suite;
+  const std::string scene =
+      fmt::format("{}, camera {}", timed.scene->name, timed.scene->camera(timed.camera).name);
   if (format == "json") return bench::report_json(session, scene, rows).dump(2) + "\n";
   if (format == "github-action") return bench::report_github_action(rows);
   return fmt::format("scene: {}\n", scene) +

@@ -24,8 +24,7 @@ struct Shared;
 using AddCommand = void(CLI::App& app, Shared& shared);
 
 /// Cells that stand beside the variants of `clpv quality`. The calls come in this order, once each.
-class QualityAddition {
- public:
+struct QualityAddition {
   virtual ~QualityAddition() = default;
   virtual void add_options(CLI::App& command) = 0;
   /// The option that asks for cells ("--baseline") if the command line has it, else empty.

@@ -130,14 +130,9 @@ struct Options {
   std::vector<Show> views = {Show::full};
 };
 
-std::vector<NamedFile> outputs_of(const Options& options) {
+void run(const Options& options, const Shared& shared) {
   std::vector<NamedFile> outputs = view_files(options.output, options.views);
   if (options.stats != "-") outputs.push_back({"--stats", options.stats});
-  return outputs;
-}
-
-void run(const Options& options, const Shared& shared) {
-  const std::vector<NamedFile> outputs = outputs_of(options);
   check_outputs(outputs);
   FrameStats stats;
   const int timed = options.stats.empty() ? 0 : options.frames;

@@ -55,12 +55,6 @@ std::vector<PageVariant> page_variants(const Options& options) {
           {"clpv", {{"preset", "best"}, {"bounces", options.tracing.bounces}}}};
 }
 
-std::string as_arguments(const OptionValues& given) {
-  std::string text = "SCENE --view indirect";
-  for (const auto& [name, value] : given) text += fmt::format(" --{} {}", name, value);
-  return text;
-}
-
 /// Input documents of the page, each with its file name for messages.
 nlohmann::json read_documents(const std::vector<std::string>& paths, const char* wanted,
                               const char* command) {
@@ -230,8 +224,12 @@ void require_own_page(const fs::path& page) {
 /// Titles of all methods, in the order of their images.
 nlohmann::json methods(const Options& options) {
   nlohmann::json all = nlohmann::json::array();
-  for (const PageVariant& variant : page_variants(options))
-    all.push_back({{"title", variant.title}, {"options", as_arguments(variant.given)}});
+  for (const PageVariant& variant : page_variants(options)) {
+    std::string arguments = "SCENE --view indirect";
+    for (const auto& [name, value] : variant.given)
+      arguments += fmt::format(" --{} {}", name, value);
+    all.push_back({{"title", variant.title}, {"options", arguments}});
+  }
   for (const std::string& folder : options.images)
     all.push_back({{"title", title_of(folder)}, {"options", nullptr}});
   return all;

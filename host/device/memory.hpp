@@ -91,8 +91,7 @@ using Buffer = DeviceMemory<cl::Buffer>;
 using Image3D = DeviceMemory<cl::Image3D>;
 
 /// More memory or numbers than the device allows.
-class TooLarge : public Error {
- public:
+struct TooLarge : Error {
   TooLarge(Error error, double share) : Error(std::move(error)), share(share) {}
   double share;  ///< allowed by the device / needed (in use + requested), below 1
 };

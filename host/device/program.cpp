@@ -27,15 +27,10 @@ constexpr std::string_view kOnce = "#pragma once";
 // Deeper than any kernel nests; stops a file that includes itself.
 constexpr int kMaxIncludeDepth = 8;
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{} : text.substr(first);
-}
-
 /// Returns NAME of a line `#include "NAME"`; empty for other lines.
 std::string included_name(std::string_view line) {
-  line = trim(line);
-  if (!line.starts_with("#include")) return {};
+  const auto first = std::min(line.find_first_not_of(" \t"), line.size());
+  if (!line.substr(first).starts_with("#include")) return {};
   const auto open = line.find('"');
   const auto close = line.rfind('"');
   if (open == std::string_view::npos || close == open) return {};
@@ -100,34 +95,6 @@ void append_file(std::string& out, const std::string& name, int depth) {
   if (once) out += "#endif\n";
 }
 
-}  // namespace
-
-void record_kernel_files() {
-  const char* folder = std::getenv("CLPV_KERNEL_DIR");
-  if (folder == nullptr || *folder == '\0') return;
-  for (const auto& [name, embedded] : detail::embedded_kernel_files())
-    InputRecord::add({"CLPV_KERNEL_DIR", std::filesystem::path(folder) / name});
-}
-
-std::string kernel_file(const std::string& name) {
-  auto text = find_kernel_file(name);
-  if (!text) throw Error(ExitCode::run_time, "no kernel file named '{}'", name);
-  return *std::move(text);
-}
-
-void add_kernels(Fingerprint& print) {
-  std::set<std::string> added;
-  for (const auto& [name, text] : detail::embedded_kernel_files()) add_file(print, name, added);
-}
-
-std::string assemble_kernel_source(const std::string& name) {
-  std::string source;
-  append_file(source, name, 0);
-  return source;
-}
-
-namespace {
-
 /// Retries of a build that fails without an error in the text. PoCL 3.1 fails so occasionally while
 /// another process compiles the same text, because both write to PoCL's cache. Waits double from
 /// kRetryWait on.
@@ -139,13 +106,6 @@ constexpr const char* kImageProbe =
     "__kernel void probe(__read_only image3d_t image, __global float4* texel) {\n"
     "  texel[0] = read_imagef(image, (int4)(0));\n"
     "}\n";
-
-/// Returns true if the log blames a line of the text: "inject.cl:12:3: error:", or "error:
-/// inject.cl:12:3" of PoCL 6. Other errors are the driver's own.
-bool blames_text(const std::string& log) {
-  static const std::regex place(":[0-9]+: (fatal )?error:|error: [^\n]*:[0-9]+:[0-9]+");
-  return std::regex_search(log, place);
-}
 
 /// The compiler's log, or a note that the driver has none.
 std::string build_log(const cl::Program& program, const Device& device) {
@@ -185,6 +145,30 @@ bool lacks_images_in_standard(const cl::Context& context, const Device& device) 
 
 }  // namespace
 
+void record_kernel_files() {
+  const char* folder = std::getenv("CLPV_KERNEL_DIR");
+  if (folder == nullptr || *folder == '\0') return;
+  for (const auto& [name, embedded] : detail::embedded_kernel_files())
+    InputRecord::add({"CLPV_KERNEL_DIR", std::filesystem::path(folder) / name});
+}
+
+std::string kernel_file(const std::string& name) {
+  auto text = find_kernel_file(name);
+  if (!text) throw Error(ExitCode::run_time, "no kernel file named '{}'", name);
+  return *std::move(text);
+}
+
+void add_kernels(Fingerprint& print) {
+  std::set<std::string> added;
+  for (const auto& [name, text] : detail::embedded_kernel_files()) add_file(print, name, added);
+}
+
+std::string assemble_kernel_source(const std::string& name) {
+  std::string source;
+  append_file(source, name, 0);
+  return source;
+}
+
 std::string program_text(const ProgramSource& source) {
   std::string text;
   if (!source.literals.defined().empty()) text += "#line 1 \"literals\"\n";
@@ -195,6 +179,9 @@ std::string program_text(const ProgramSource& source) {
 
 cl::Program build_program(const cl::Context& context, const Device& device,
                           const ProgramSource& source, const std::string& text) {
+  // A log blames a line of the text by "inject.cl:12:3: error:", or "error: inject.cl:12:3" of PoCL
+  // 6. Other errors are the driver's own.
+  static const std::regex blame(":[0-9]+: (fatal )?error:|error: [^\n]*:[0-9]+:[0-9]+");
   std::string options = source.options;
   for (int left = kRetries;;) {
     cl::Program program(context, text);
@@ -203,7 +190,7 @@ cl::Program build_program(const cl::Context& context, const Device& device,
       return program;
     } catch (const cl::Error& error) {
       const std::string log = build_log(program, device);
-      if (!blames_text(log) && left > 0) {
+      if (!std::regex_search(log, blame) && left > 0) {
         std::this_thread::sleep_for(kRetryWait * (1 << (kRetries - left--)));
       } else if (options.starts_with(kStandard) && lacks_images_in_standard(context, device)) {
         options.erase(0, kStandard.size());

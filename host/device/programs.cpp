@@ -39,6 +39,23 @@ SharedPrograms& shared_programs() {
   return *all;
 }
 
+constexpr double kNoticeMs = 2000;  // longer waits are explained in the log
+
+/// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug
+/// reports.
+void dump(const ProgramSource& source, const std::string& text) {
+  const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
+  if (folder == nullptr || *folder == '\0') return;
+  const std::string name = std::filesystem::path(source.file).filename().string();
+  const std::filesystem::path file =
+      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), name);
+  try {
+    write_file(file, text, OutputFile::Kind::derived);
+  } catch (const Error& error) {
+    throw Error(ExitCode::run_time, "CLPV_PROGRAM_DUMP: {}", error.what());
+  }
+}
+
 }  // namespace
 
 cl::Context shared_context(const cl::Device& device) {
@@ -68,27 +85,6 @@ void share_program(const cl::Context& context, const std::string& key, const cl:
   shared.programs.erase(std::ranges::min_element(
       shared.programs, {}, [](const auto& entry) { return entry.second.used; }));
 }
-
-namespace {
-
-constexpr double kNoticeMs = 2000;  // longer waits are explained in the log
-
-/// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug
-/// reports.
-void dump(const ProgramSource& source, const std::string& text) {
-  const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
-  if (folder == nullptr || *folder == '\0') return;
-  const std::string name = std::filesystem::path(source.file).filename().string();
-  const std::filesystem::path file =
-      std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), name);
-  try {
-    write_file(file, text, OutputFile::Kind::derived);
-  } catch (const Error& error) {
-    throw Error(ExitCode::run_time, "CLPV_PROGRAM_DUMP: {}", error.what());
-  }
-}
-
-}  // namespace
 
 Programs::Programs(const Device& device, const cl::Context& context,
                    std::optional<ProgramCache> cache, Compilation compilation)

@@ -260,36 +260,6 @@ bool has_pixel(const Image& image, std::size_t index) {
   return x >= window.left && x < window.right && y >= window.top && y < window.bottom;
 }
 
-}  // namespace
-
-void check_comparable(const Image& a, const std::string& a_name, const Image& b,
-                      const std::string& b_name) {
-  if (a.width != b.width || a.height != b.height) {
-    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; allowed: equal sizes",
-                a_name, a.width, a.height, b_name, b.width, b.height);
-  }
-  if (a.windows != b.windows) {
-    throw Error(ExitCode::bad_input, "{} has {} of {} x {}, {} has {}; allowed: the same pixels",
-                a_name, pixels_in(a), a.width, a.height, b_name, pixels_in(b));
-  }
-  const std::size_t in_a = colour_channels(a, a_name).size(),
-                    in_b = colour_channels(b, b_name).size();
-  if (in_a != in_b) {
-    throw Error(ExitCode::bad_input, "{} has {} colour channels, {} has {}; allowed: equal numbers",
-                a_name, in_a, b_name, in_b);
-  }
-  if (a.encoding != b.encoding) {
-    const bool a_linear = a.encoding == Encoding::linear;
-    throw Error(ExitCode::bad_input,
-                "{} has linear radiance, {} sRGB-encoded values; allowed: equal encodings",
-                a_linear ? a_name : b_name, a_linear ? b_name : a_name);
-  }
-  check_finite(a, a_name);
-  check_finite(b, b_name);
-}
-
-namespace {
-
 std::optional<double> ratio(double numerator, double denominator) {
   if (denominator == 0) return std::nullopt;
   return numerator / denominator;
@@ -357,6 +327,32 @@ double pixel_luminance(const float* values, const std::vector<std::size_t>& chan
 }
 
 }  // namespace
+
+void check_comparable(const Image& a, const std::string& a_name, const Image& b,
+                      const std::string& b_name) {
+  if (a.width != b.width || a.height != b.height) {
+    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; allowed: equal sizes",
+                a_name, a.width, a.height, b_name, b.width, b.height);
+  }
+  if (a.windows != b.windows) {
+    throw Error(ExitCode::bad_input, "{} has {} of {} x {}, {} has {}; allowed: the same pixels",
+                a_name, pixels_in(a), a.width, a.height, b_name, pixels_in(b));
+  }
+  const std::size_t in_a = colour_channels(a, a_name).size(),
+                    in_b = colour_channels(b, b_name).size();
+  if (in_a != in_b) {
+    throw Error(ExitCode::bad_input, "{} has {} colour channels, {} has {}; allowed: equal numbers",
+                a_name, in_a, b_name, in_b);
+  }
+  if (a.encoding != b.encoding) {
+    const bool a_linear = a.encoding == Encoding::linear;
+    throw Error(ExitCode::bad_input,
+                "{} has linear radiance, {} sRGB-encoded values; allowed: equal encodings",
+                a_linear ? a_name : b_name, a_linear ? b_name : a_name);
+  }
+  check_finite(a, a_name);
+  check_finite(b, b_name);
+}
 
 Comparison compare(const Image& a, const std::string& a_name, const Image& b,
                    const std::string& b_name, float exposure) {

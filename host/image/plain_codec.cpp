@@ -147,8 +147,7 @@ EncodedBytes plain_png(const CodedImage& image, const std::uint8_t* pixels) {
   return bytes;
 }
 
-class PlainCodec : public ImageCodec {
- public:
+struct PlainCodec : ImageCodec {
   std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string&,
                                      std::span<const std::uint8_t> bytes,
                                      std::string& error) const override {

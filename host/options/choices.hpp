@@ -106,11 +106,6 @@ enum class NearRays { of2, of4, of8, of16, of64 };
 template <>
 inline constexpr auto kNames<NearRays> = name_list("2", "4", "8", "16", "64");
 
-constexpr int rays_of(NearRays rays) {
-  constexpr int kRays[] = {2, 4, 8, 16, 64};
-  return kRays[static_cast<int>(rays)];
-}
-
 /// Number of sweep directions: 24 bins of 1, 4, 9 or 16 parts (basis/sweep.hpp).
 enum class Directions { of24, of96, of216, of384 };
 

@@ -71,9 +71,10 @@ int near_step(const RenderOptions& options) {
 }  // namespace
 
 NearOptions near_options(const RenderOptions& options) {
+  constexpr int kRays[] = {2, 4, 8, 16, 64};
   return {.gather = gather_options(options),
           .step = near_step(options),
-          .rays = rays_of(options.near_rays),
+          .rays = kRays[static_cast<int>(options.near_rays)],
           .reflects = options.reflects()};
 }
 

@@ -183,22 +183,6 @@ QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>
   return sum;
 }
 
-}  // namespace
-
-std::vector<QualitySummary> summarise(const std::vector<QualityCell>& cells) {
-  std::vector<QualitySummary> sums;
-  for (const QualityCell& cell : cells) {
-    if (std::ranges::find(sums, cell.variant, &QualitySummary::variant) == sums.end())
-      sums.push_back(summary_of(cell.variant, cells));
-  }
-  std::ranges::stable_sort(sums, {}, [](const QualitySummary& sum) {
-    return std::tuple(sum.rejected > 0, sum.undefined, sum.nrmse.value_or(0));
-  });
-  return sums;
-}
-
-namespace {
-
 nlohmann::json json_of(const Variant& variant) {
   nlohmann::json json = nlohmann::json::object();
   for (const auto& [name, value] : variant) json[name] = value;
@@ -262,6 +246,18 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 }
 
 }  // namespace
+
+std::vector<QualitySummary> summarise(const std::vector<QualityCell>& cells) {
+  std::vector<QualitySummary> sums;
+  for (const QualityCell& cell : cells) {
+    if (std::ranges::find(sums, cell.variant, &QualitySummary::variant) == sums.end())
+      sums.push_back(summary_of(cell.variant, cells));
+  }
+  std::ranges::stable_sort(sums, {}, [](const QualitySummary& sum) {
+    return std::tuple(sum.rejected > 0, sum.undefined, sum.nrmse.value_or(0));
+  });
+  return sums;
+}
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain,
                                    nrmse_best_gain, energy_ratio, flip, times, compute_units,

@@ -199,19 +199,9 @@ class BlockerRaster {
   const ClpvGrid& grid_;
 };
 
-}  // namespace
-
-BlockerBounds voxelize_blockers(const SceneData& scene, const ClpvGrid& grid) {
-  BlockerRaster raster(scene, grid);
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) raster.add(t);
-  return {raster.lower.shares(), raster.upper.shares()};
-}
-
 // R_a: covered share of face a times mean albedo; channel 3: the mean share m of its triangles,
 // channel 4: R of albedo 1; by 8 x 8 samples per face, off the surface. A triangle of normal n
 // counts towards the three axes next to n with weights |n_a| / (|n_x| + |n_y| + |n_z|).
-
-namespace {
 
 constexpr double kReflectorTolerance = 4e-3;  // [samples], [cells / 8]: rounding error of float32
 
@@ -366,16 +356,6 @@ class CellFaces {
   std::vector<CellFace> faces_;
 };
 
-}  // namespace
-
-ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid, bool white) {
-  CellFaces faces(scene, grid, white);
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) faces.add(t);
-  return faces.areas();
-}
-
-namespace {
-
 constexpr int kCubePoints = 4;  // per cube along each axis
 // [cells]: points this far outside an edge count as inside.
 constexpr double kVisibilitySeam = 1e-3;
@@ -424,6 +404,18 @@ void add(Occlusion& occluded, int n, const Corners& t, const glm::ivec3& cube) {
 }
 
 }  // namespace
+
+BlockerBounds voxelize_blockers(const SceneData& scene, const ClpvGrid& grid) {
+  BlockerRaster raster(scene, grid);
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) raster.add(t);
+  return {raster.lower.shares(), raster.upper.shares()};
+}
+
+ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid, bool white) {
+  CellFaces faces(scene, grid, white);
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) faces.add(t);
+  return faces.areas();
+}
 
 Occlusion occlude(const SceneData& scene, const ClpvGrid& grid) {
   const int n = grid.n;

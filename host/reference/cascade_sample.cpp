@@ -129,6 +129,37 @@ unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& c
   return point && point->seen != 0 ? cells_from(*point, cube) : kAllPoints;
 }
 
+TrilinearSample visible_sample(const glm::dvec3& at, const glm::dvec3& clear, int n,
+                               const std::uint8_t* occluded, const Volume& light) {
+  TrilinearSample sample = trilinear_sample(at, n);
+  const glm::ivec3 cube = sample.cell[0];
+  const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
+  const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
+  std::optional<ClearPoint> point;
+  if (const auto place = clear_place(at, clear, n)) point = sample_point(*place, n, occluded);
+  const std::array<double, 8> visible =
+      visible_shares(t, occluded + number, clear_cells(point, cube));
+  double total = 0;
+  for (std::size_t corner = 0; corner < 8; ++corner)
+    total += visible[corner] * sample.weight[corner];
+  if (total > kMinVisibleShare) {
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      sample.weight[corner] *= visible[corner] / total;
+  } else if (point) {
+    use_point(sample, *point, n);
+  }
+  constexpr double kLeastOpen = 0.5;  // least_open of kernels/gather/gather_packed.h
+  const auto next = next_place(at, clear, n);
+  if (next && light.channels > 3 && interpolated(light, 3, sample)[0] < kLeastOpen * kEvenLight)
+    use_point(sample, sample_point(*next, n, occluded), n);
+  return sample;
+}
+
+glm::dvec4 weighed(const std::vector<double>& weights, const RadianceField& field) {
+  return {dot(weights, field[0]), dot(weights, field[1]), dot(weights, field[2]),
+          dot(weights, field[3])};
+}
+
 }  // namespace
 
 TrilinearSample trilinear_sample(const glm::dvec3& at, int n) {
@@ -164,36 +195,6 @@ bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint
   const glm::ivec3 apart = glm::abs(q.cube - p.cube);
   return std::max({apart.x, apart.y, apart.z}) > 1 || (p.seen & cells_from(q, p.cube)) != 0;
 }
-
-namespace {
-
-TrilinearSample visible_sample(const glm::dvec3& at, const glm::dvec3& clear, int n,
-                               const std::uint8_t* occluded, const Volume& light) {
-  TrilinearSample sample = trilinear_sample(at, n);
-  const glm::ivec3 cube = sample.cell[0];
-  const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
-  const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
-  std::optional<ClearPoint> point;
-  if (const auto place = clear_place(at, clear, n)) point = sample_point(*place, n, occluded);
-  const std::array<double, 8> visible =
-      visible_shares(t, occluded + number, clear_cells(point, cube));
-  double total = 0;
-  for (std::size_t corner = 0; corner < 8; ++corner)
-    total += visible[corner] * sample.weight[corner];
-  if (total > kMinVisibleShare) {
-    for (std::size_t corner = 0; corner < 8; ++corner)
-      sample.weight[corner] *= visible[corner] / total;
-  } else if (point) {
-    use_point(sample, *point, n);
-  }
-  constexpr double kLeastOpen = 0.5;  // least_open of kernels/gather/gather_packed.h
-  const auto next = next_place(at, clear, n);
-  if (next && light.channels > 3 && interpolated(light, 3, sample)[0] < kLeastOpen * kEvenLight)
-    use_point(sample, sample_point(*next, n, occluded), n);
-  return sample;
-}
-
-}  // namespace
 
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample) {
   std::vector<double> c(volume.coefficients, 0.0);
@@ -244,15 +245,6 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
   field[3][0] += rest * kEvenLight;
   return field;
 }
-
-namespace {
-
-glm::dvec4 weighed(const std::vector<double>& weights, const RadianceField& field) {
-  return {dot(weights, field[0]), dot(weights, field[1]), dot(weights, field[2]),
-          dot(weights, field[3])};
-}
-
-}  // namespace
 
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w) {
   std::vector<double> y(static_cast<std::size_t>(basis.size()));

@@ -144,33 +144,6 @@ class ViewReader {
   Names cameras_, lights_;
 };
 
-}  // namespace
-
-void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
-                  SceneData& scene, Motion& motion, const ViewNotes& notes) {
-  ViewReader reader(document, metres_per_unit, scene, notes);
-  for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
-    const TreeNode& node = motion.tree.nodes[i];
-    const tinygltf::Node& source = entry(document.model.nodes, node.index);
-    if (source.camera >= 0 && reader.camera(node.index, source, posed.unmirrored(i)) &&
-        node.moves) {
-      motion.cameras.push_back({scene.cameras.size() - 1, i});
-    }
-    if (const auto found = source.extensions.find("KHR_lights_punctual");
-        found != source.extensions.end()) {
-      reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(),
-                   posed.unmirrored(i));
-      if (node.moves) motion.lights.push_back({scene.lights.size() - 1, i});
-    }
-  }
-  reader.finish();
-}
-
-static_assert(std::endian::native == std::endian::little,
-              "glTF buffers are little-endian and read in place");
-
-namespace {
-
 template <typename T>
 T load(const std::uint8_t* from) {
   T value;
@@ -224,6 +197,29 @@ std::string type_name(int type) {
 }
 
 }  // namespace
+
+void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
+                  SceneData& scene, Motion& motion, const ViewNotes& notes) {
+  ViewReader reader(document, metres_per_unit, scene, notes);
+  for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
+    const TreeNode& node = motion.tree.nodes[i];
+    const tinygltf::Node& source = entry(document.model.nodes, node.index);
+    if (source.camera >= 0 && reader.camera(node.index, source, posed.unmirrored(i)) &&
+        node.moves) {
+      motion.cameras.push_back({scene.cameras.size() - 1, i});
+    }
+    if (const auto found = source.extensions.find("KHR_lights_punctual");
+        found != source.extensions.end()) {
+      reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(),
+                   posed.unmirrored(i));
+      if (node.moves) motion.lights.push_back({scene.lights.size() - 1, i});
+    }
+  }
+  reader.finish();
+}
+
+static_assert(std::endian::native == std::endian::little,
+              "glTF buffers are little-endian and read in place");
 
 GltfAccessor::GltfAccessor(const GltfDocument& document, int index)
     : document_(&document),

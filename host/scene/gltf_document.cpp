@@ -18,11 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-bool is_glb(const Bytes& bytes) {
-  constexpr std::uint32_t kMagic = 0x46546C67;
-  return bytes.size() >= 4 && little_endian(bytes, 0) == kMagic;
-}
-
 /// The document's JSON, and the binary chunk of a .glb.
 struct Container {
   std::string_view json;
@@ -256,9 +251,8 @@ GltfDocument read_gltf_document(const std::filesystem::path& path) {
   document.file = path.string();
   const Bytes bytes = read_file(path, bounds::kGlbBytes, document.file);
   document.folder = std::filesystem::canonical(path).parent_path();
-  const Container container =
-      is_glb(bytes) ? chunks_of_glb(bytes, document.file)
-                    : Container{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+  Container container{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+  if (container.json.starts_with("glTF")) container = chunks_of_glb(bytes, document.file);
   json parsed = parse_json(container.json, document.file);
   check_gltf(parsed, document.file);
   check_transforms(parsed, document.file);

@@ -158,41 +158,6 @@ class PrimitiveReader {
   const UvMapping& mapping_;
 };
 
-}  // namespace
-
-LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
-                              const MaterialSet& materials, GeometryBudget& budget,
-                              std::vector<std::uint32_t>& slots, Notes& notes) {
-  const tinygltf::Primitive& source = entry(document.model.meshes, mesh).primitives[index];
-  const std::string place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
-  if (source.mode < TINYGLTF_MODE_TRIANGLES) {
-    notes.add(fmt::format("{}: made of {}, which are not drawn", place,
-                          source.mode == TINYGLTF_MODE_POINTS ? "points" : "lines"));
-    return {};
-  }
-  const auto number = static_cast<std::uint32_t>(
-      source.material < 0 ? static_cast<int>(materials.materials.size()) - 1 : source.material);
-  const ClpvMaterial& material = materials.materials[number];
-  const bool textured =
-      material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
-  const UvMapping& mapping = materials.mappings[number];
-  const PrimitiveReader reader(document, source, place, mapping);
-  const Attributes attributes = reader.attributes(textured, notes);
-  const auto pointer = [](const auto& accessor) { return accessor ? &*accessor : nullptr; };
-  LocalPrimitive made =
-      make_primitive({&attributes.position, pointer(attributes.normal), pointer(attributes.uv),
-                      pointer(attributes.colour), pointer(attributes.indices),
-                      order_of(source.mode), mapping.transform},
-                     document.file, place, number, budget, slots);
-  reader.read_influences(attributes, made);
-  reader.read_targets(attributes, budget, made, notes);
-  if (source.attributes.contains("JOINTS_1"))
-    notes.add(fmt::format("{}: more than four joints per vertex: only JOINTS_0 is read", place));
-  return made;
-}
-
-namespace {
-
 /// One place of a mesh: a node of the tree, and the transform of an instance to that node's space.
 struct MeshPlace {
   std::size_t node;
@@ -286,6 +251,37 @@ void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
 }
 
 }  // namespace
+
+LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
+                              const MaterialSet& materials, GeometryBudget& budget,
+                              std::vector<std::uint32_t>& slots, Notes& notes) {
+  const tinygltf::Primitive& source = entry(document.model.meshes, mesh).primitives[index];
+  const std::string place = fmt::format("/meshes/{}/primitives/{}", mesh, index);
+  if (source.mode < TINYGLTF_MODE_TRIANGLES) {
+    notes.add(fmt::format("{}: made of {}, which are not drawn", place,
+                          source.mode == TINYGLTF_MODE_POINTS ? "points" : "lines"));
+    return {};
+  }
+  const auto number = static_cast<std::uint32_t>(
+      source.material < 0 ? static_cast<int>(materials.materials.size()) - 1 : source.material);
+  const ClpvMaterial& material = materials.materials[number];
+  const bool textured =
+      material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
+  const UvMapping& mapping = materials.mappings[number];
+  const PrimitiveReader reader(document, source, place, mapping);
+  const Attributes attributes = reader.attributes(textured, notes);
+  const auto pointer = [](const auto& accessor) { return accessor ? &*accessor : nullptr; };
+  LocalPrimitive made =
+      make_primitive({&attributes.position, pointer(attributes.normal), pointer(attributes.uv),
+                      pointer(attributes.colour), pointer(attributes.indices),
+                      order_of(source.mode), mapping.transform},
+                     document.file, place, number, budget, slots);
+  reader.read_influences(attributes, made);
+  reader.read_targets(attributes, budget, made, notes);
+  if (source.attributes.contains("JOINTS_1"))
+    notes.add(fmt::format("{}: more than four joints per vertex: only JOINTS_0 is read", place));
+  return made;
+}
 
 void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
                    SceneData& scene, Motion& motion, Notes& notes) {

@@ -88,34 +88,6 @@ std::vector<std::string> others_in(const tinygltf::Value& attributes) {
   return names;
 }
 
-}  // namespace
-
-std::vector<std::optional<glm::dmat4>> read_instances(const GltfDocument& document, int node,
-                                                      std::size_t& budget, Notes& notes) {
-  const tinygltf::Node& source = entry(document.model.nodes, node);
-  const auto found = source.extensions.find(kExtension);
-  if (found == source.extensions.end()) return {std::nullopt};
-  const tinygltf::Value& attributes = found->second.Get("attributes");
-  const InstanceReader reader(document, node, attributes);
-  if (reader.count() > budget) {
-    reject(document.file, reader.place(), fmt::format("{} more instances", reader.count()),
-           fmt::format("at most {} in all", bounds::kInstances));
-  }
-  budget -= reader.count();
-  if (const auto others = others_in(attributes); !others.empty())
-    notes.add(fmt::format("{}: not read: {}", reader.place(), fmt::join(others, ", ")));
-  if (source.skin >= 0) {
-    notes.add(fmt::format("{}: a skin places the mesh, which is drawn once", reader.place()));
-    return {std::nullopt};
-  }
-  std::vector<std::optional<glm::dmat4>> made;
-  made.reserve(reader.count());
-  for (std::size_t i = 0; i < reader.count(); ++i) made.push_back(reader.matrix(i));
-  return made;
-}
-
-namespace {
-
 constexpr int kNone = -1;
 
 std::string place_of(int node) {
@@ -220,6 +192,30 @@ std::vector<glm::dmat4> read_inverse_binds(const GltfDocument& document, int acc
 }
 
 }  // namespace
+
+std::vector<std::optional<glm::dmat4>> read_instances(const GltfDocument& document, int node,
+                                                      std::size_t& budget, Notes& notes) {
+  const tinygltf::Node& source = entry(document.model.nodes, node);
+  const auto found = source.extensions.find(kExtension);
+  if (found == source.extensions.end()) return {std::nullopt};
+  const tinygltf::Value& attributes = found->second.Get("attributes");
+  const InstanceReader reader(document, node, attributes);
+  if (reader.count() > budget) {
+    reject(document.file, reader.place(), fmt::format("{} more instances", reader.count()),
+           fmt::format("at most {} in all", bounds::kInstances));
+  }
+  budget -= reader.count();
+  if (const auto others = others_in(attributes); !others.empty())
+    notes.add(fmt::format("{}: not read: {}", reader.place(), fmt::join(others, ", ")));
+  if (source.skin >= 0) {
+    notes.add(fmt::format("{}: a skin places the mesh, which is drawn once", reader.place()));
+    return {std::nullopt};
+  }
+  std::vector<std::optional<glm::dmat4>> made;
+  made.reserve(reader.count());
+  for (std::size_t i = 0; i < reader.count(); ++i) made.push_back(reader.matrix(i));
+  return made;
+}
 
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
                     const glm::dmat4& root, Notes& notes) {

@@ -40,12 +40,6 @@ std::optional<Bytes> base64_decoded(std::string text) {
   return Bytes(bytes.begin(), bytes.end());
 }
 
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  const auto [in_folder, in_path] =
-      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-  return in_folder == folder.end();
-}
-
 }  // namespace
 
 std::optional<std::string> percent_decoded(std::string_view uri) {
@@ -89,7 +83,9 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::
   std::error_code failure;
   const fs::path real = fs::canonical(folder / relative, failure);
   if (failure) reject_uri("no such file");
-  if (!lies_in(real, fs::canonical(folder))) reject_uri("which leaves the model's folder");
+  const fs::path home = fs::canonical(folder);
+  if (std::ranges::mismatch(home, real).in1 != home.end())
+    reject_uri("which leaves the model's folder");
   if (!fs::is_regular_file(real))
     reject_uri(fs::is_directory(real) ? "a folder" : "no regular file");
   return real;

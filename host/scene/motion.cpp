@@ -141,11 +141,6 @@ Pose pose_at(const NodeTree& tree, const TreeNode& node, double seconds) {
   return pose;
 }
 
-/// Transform of a node to its parent's space.
-glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
-  return node.curves.moves() ? pose_at(tree, node, seconds).matrix() : node.rest;
-}
-
 }  // namespace
 
 std::string place_of(const TreeNode& node) {
@@ -165,7 +160,8 @@ std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
   made.reserve(nodes.size());
   for (const TreeNode& node : nodes) {
     const glm::dmat4& parent = node.parent ? made[*node.parent] : root;
-    made.push_back(parent * local_transform(*this, node, seconds));
+    made.push_back(parent *
+                   (node.curves.moves() ? pose_at(*this, node, seconds).matrix() : node.rest));
     if (!finite(made.back())) {
       reject(file, place_of(node), "a transform that overflows", "finite transforms");
     }

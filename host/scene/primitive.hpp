@@ -13,8 +13,7 @@
 namespace clpv {
 
 /// Numbers of an attribute or of indices: elements of some components each.
-class NumberArray {
- public:
+struct NumberArray {
   virtual ~NumberArray() = default;
   virtual std::size_t count() const = 0;  ///< elements
   virtual int components() const = 0;

@@ -21,12 +21,6 @@ std::string quantity_of(const Rule& rule) {
   return rule.place.substr(rule.place.rfind('/') + 1);
 }
 
-std::vector<std::string> quantities_of(const KeyedList& list) {
-  std::vector<std::string> names;
-  for (const Rule& rule : list.quantities) names.push_back(quantity_of(rule));
-  return names;
-}
-
 void check_key_times(const json& keys, const std::string& file, const std::string& place) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const double before = keys[i - 1]["time"], time = keys[i]["time"];
@@ -44,8 +38,10 @@ void check_key_quantities(const json& given, const KeyedList& list, const std::s
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string here = fmt::format("{}/keys/{}", place, i);
     if (keys[i].size() == 1) {
+      std::vector<std::string> names;
+      for (const Rule& rule : list.quantities) names.push_back(quantity_of(rule));
       reject(file, here, "only a time",
-             fmt::format("a time and at least one of {}", fmt::join(quantities_of(list), ", ")));
+             fmt::format("a time and at least one of {}", fmt::join(names, ", ")));
     }
     for (const auto& [key, value] : keys[i].items()) {
       if (given.contains(key)) {

@@ -22,15 +22,11 @@ double largest_of(std::span<const double> values) {
 std::string initialiser(std::span<const double> values, double largest) {
   std::vector<std::string> texts;
   for (const double value : values)
-    texts.push_back(float_literal(is_negligible(value, largest) ? 0 : value));
+    texts.push_back(float_literal(std::abs(value) <= 1e-12 * largest ? 0 : value));
   return fmt::format("{{{}}}", fmt::join(texts, ", "));
 }
 
 }  // namespace
-
-bool is_negligible(double number, double largest) {
-  return std::abs(number) <= 1e-12 * largest;
-}
 
 Literals& Literals::flag(const std::string& name, bool value) {
   return define(name, value ? "1" : "0");

@@ -10,10 +10,6 @@
 
 namespace clpv {
 
-/// Returns true for a number below 1e-12 of the `largest` of a table: rounding of double sums of
-/// order 1.
-bool is_negligible(double number, double largest);
-
 /// Set of literals. Each name starts with CLPV_ and is defined once. Functions throw
 /// Error(run_time) for another name or a second definition.
 class Literals {
@@ -34,8 +30,8 @@ class Literals {
                  const std::string& word);  ///< name defined in the kernels: "CLPV_SOA"
 
   /// Arrays: "{1.0f, 0.0f}", "{1, 2}", and a row of numbers for each row of a matrix: "{{1.0f,
-  /// 0.0f}, {0.0f, 2.0f}}". Floats that is_negligible() beside the largest are rounding errors of
-  /// zeros and become 0, so that kernels can leave out their products.
+  /// 0.0f}, {0.0f, 2.0f}}". Floats below 1e-12 of the largest are rounding errors of zeros, of
+  /// double sums of order 1, and become 0, so that kernels can leave out their products.
   Literals& reals(const std::string& name, std::span<const double> values);
   Literals& integers(const std::string& name, std::span<const int> values);
   template <typename Matrix>

@@ -57,32 +57,8 @@ Job gather_job_of(Session& session, const RenderOptions& o) {
   return gather_job(session, random_gathering(session, basis, o.transport, gather_options(o)));
 }
 
-}  // namespace
-
-Cases cases_of(const RenderOptions& options) {
-  RenderOptions o = options;
-  o.grid = kGrid;
-  const std::string name =
-      fmt::format("{}/{}/{}", name_of(o.preset), o.basis, format_name(o.format()));
-  Cases cases = {job_case(Stage::inject, name + "/light",
-                          [o](Session& session) { return inject_job_of(session, o, true); })};
-  if (o.blockers == Blockers::seen)
-    cases.push_back(job_case(Stage::inject, name + "/geometry",
-                             [o](Session& session) { return inject_job_of(session, o, false); }));
-  const Stage propagation = has_faces(o.transport) ? Stage::propagate
-                            : !o.reflects()        ? Stage::sweep
-                                                   : Stage::bounce;
-  cases.push_back(
-      job_case(propagation, name, [o](Session& session) { return propagate_job_of(session, o); }));
-  cases.push_back(
-      job_case(Stage::gather, name, [o](Session& session) { return gather_job_of(session, o); }));
-  return cases;
-}
-
 // Compares the device's layout of the shared structs with the host's; a mismatch would corrupt
 // every stage's input.
-
-namespace {
 
 struct Place {
   const char* name;
@@ -117,6 +93,26 @@ Deviation compare_sizes(Session& session) {
 }
 
 }  // namespace
+
+Cases cases_of(const RenderOptions& options) {
+  RenderOptions o = options;
+  o.grid = kGrid;
+  const std::string name =
+      fmt::format("{}/{}/{}", name_of(o.preset), o.basis, format_name(o.format()));
+  Cases cases = {job_case(Stage::inject, name + "/light",
+                          [o](Session& session) { return inject_job_of(session, o, true); })};
+  if (o.blockers == Blockers::seen)
+    cases.push_back(job_case(Stage::inject, name + "/geometry",
+                             [o](Session& session) { return inject_job_of(session, o, false); }));
+  const Stage propagation = has_faces(o.transport) ? Stage::propagate
+                            : !o.reflects()        ? Stage::sweep
+                                                   : Stage::bounce;
+  cases.push_back(
+      job_case(propagation, name, [o](Session& session) { return propagate_job_of(session, o); }));
+  cases.push_back(
+      job_case(Stage::gather, name, [o](Session& session) { return gather_job_of(session, o); }));
+  return cases;
+}
 
 Cases sizes_cases(const CheckScope&) {
   return {deviation_case(Stage::sizes, "shared structs", compare_sizes)};

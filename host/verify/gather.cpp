@@ -48,15 +48,11 @@ struct GatherWork {
   std::size_t bytes() const { return pixels() * sizeof(cl_float4); }
 };
 
-/// Returns true if the device's image filter interpolates.
-bool filtered_by_device(const GatherOptions& options, TransportKind transport) {
-  return options.format.layout == Layout::image && options.filtered &&
-         options.gather == Gathering::all && has_faces(transport);
-}
-
 std::string_view compared_as(const GatherOptions& options, TransportKind transport) {
   if (options.gather == Gathering::visible) return "gather-visible";
-  return filtered_by_device(options, transport) ? "gather-filter" : "gather";
+  const bool by_device =
+      options.format.layout == Layout::image && options.filtered && has_faces(transport);
+  return by_device ? "gather-filter" : "gather";
 }
 
 /// Expected irradiance of the compared pixels, four numbers each.
@@ -247,30 +243,8 @@ Deviation compare_near(Session& session, const NearCase& variant) {
                         wanted.uncertain);
 }
 
-}  // namespace
-
-Cases near_cases(const CheckScope& scope) {
-  Cases cases;
-  const auto add = [&](const NearCase& variant) {
-    cases.push_back(deviation_case(Stage::near, variant.name, [variant](Session& session) {
-      return compare_near(session, variant);
-    }));
-  };
-  add({.name = "quarter", .step = 4});
-  add({.name = "reflects", .reflects = true});
-  if (!scope.thorough) return cases;
-  add({.name = "full"});
-  add({.name = "half", .step = 2});
-  add({.name = "eighth, 2 rays", .step = 8, .rays = 2});
-  add({.name = "all cells", .gather = Gathering::all});
-  add({.name = "half numbers", .format = {Layout::soa, Storage::float16}});
-  return cases;
-}
-
 // Light scattered by a medium: kernels against CPU reference, under a sun, a spot and a point light
 // and in random light of two cascades.
-
-namespace {
 
 constexpr int kMediumGrid = 9, kMediumCascades = 2;
 constexpr double kMediumFinestEdge = 6;  // [m]
@@ -306,6 +280,24 @@ Deviation compare_medium(Session& session, const ClpvMedium& medium) {
 }
 
 }  // namespace
+
+Cases near_cases(const CheckScope& scope) {
+  Cases cases;
+  const auto add = [&](const NearCase& variant) {
+    cases.push_back(deviation_case(Stage::near, variant.name, [variant](Session& session) {
+      return compare_near(session, variant);
+    }));
+  };
+  add({.name = "quarter", .step = 4});
+  add({.name = "reflects", .reflects = true});
+  if (!scope.thorough) return cases;
+  add({.name = "full"});
+  add({.name = "half", .step = 2});
+  add({.name = "eighth, 2 rays", .step = 8, .rays = 2});
+  add({.name = "all cells", .gather = Gathering::all});
+  add({.name = "half numbers", .format = {Layout::soa, Storage::float16}});
+  return cases;
+}
 
 Cases medium_cases(const CheckScope&) {
   return {deviation_case(Stage::medium, "fog",

@@ -129,31 +129,8 @@ Deviation compare_visibility(Session& session) {
   return result;
 }
 
-}  // namespace
-
-Cases blockers_cases(const CheckScope& scope) {
-  return cases_of_formats(Stage::blockers, scope, compare_blockers);
-}
-
-Cases reflectors_cases(const CheckScope& scope) {
-  Cases cases =
-      cases_of_formats(Stage::reflectors, scope, [](Session& session, const VolumeFormat& format) {
-        return compare_reflectors(session, format, false);
-      });
-  cases.push_back(deviation_case(Stage::reflectors, "white", [](Session& session) {
-    return compare_reflectors(session, {}, true);
-  }));
-  return cases;
-}
-
-Cases visibility_cases(const CheckScope&) {
-  return {deviation_case(Stage::visibility, "triangles", compare_visibility)};
-}
-
 // Shading: kernels against CPU reference, on random surfaces and random shadow maps of all kinds of
 // light.
-
-namespace {
 
 constexpr unsigned kMapWidth = 24, kMapHeight = 20;
 constexpr float kMapReach = 20;  // [m]: range of depths in a map
@@ -219,6 +196,25 @@ Deviation compare_view(Session& session, Show show, std::optional<std::size_t> c
 }
 
 }  // namespace
+
+Cases blockers_cases(const CheckScope& scope) {
+  return cases_of_formats(Stage::blockers, scope, compare_blockers);
+}
+
+Cases reflectors_cases(const CheckScope& scope) {
+  Cases cases =
+      cases_of_formats(Stage::reflectors, scope, [](Session& session, const VolumeFormat& format) {
+        return compare_reflectors(session, format, false);
+      });
+  cases.push_back(deviation_case(Stage::reflectors, "white", [](Session& session) {
+    return compare_reflectors(session, {}, true);
+  }));
+  return cases;
+}
+
+Cases visibility_cases(const CheckScope&) {
+  return {deviation_case(Stage::visibility, "triangles", compare_visibility)};
+}
 
 Cases shade_cases(const CheckScope&) {
   Cases cases;

@@ -24,10 +24,6 @@ std::size_t size(int value) {
   return value;
 }
 
-int texels_per_cell(int coefficients) {
-  return (coefficients + kTexel - 1) / kTexel;
-}
-
 std::size_t blocks_per_row(const VolumeShape& shape) {
   return size((shape.n + kTile - 1) / kTile + 1);
 }
@@ -113,7 +109,8 @@ void add_coefficient_literals(Literals& literals, int coefficients, const std::s
 
 ImageExtent image_extent(const VolumeShape& shape) {
   const auto stacked = [&](int slabs) { return size(slabs) * size(shape.n + 1) - 1; };
-  return {size(shape.n), stacked(shape.channels), stacked(texels_per_cell(shape.coefficients))};
+  return {size(shape.n), stacked(shape.channels),
+          stacked((shape.coefficients + kTexel - 1) / kTexel)};
 }
 
 std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape) {

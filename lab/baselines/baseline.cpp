@@ -219,18 +219,11 @@ constexpr double kFarthest = 2;      // extrapolation of samples
 constexpr int kCorrections = 3;      // corrections of the number of samples
 constexpr double kTolerance = 0.05;  // share of the time
 
-bool filters(Baseline baseline) {
-  return baseline == Baseline::paths_filtered || baseline == Baseline::vpl_interleaved;
-}
 bool lights_by_rsm(Baseline baseline) {
   return baseline == Baseline::vpl || baseline == Baseline::vpl_interleaved;
 }
 bool has_probes(Baseline baseline) {
   return baseline == Baseline::ddgi_first || baseline == Baseline::ddgi_converged;
-}
-
-bool has_cascades(Baseline baseline) {
-  return baseline == Baseline::radiance_cascades || baseline == Baseline::radiance_cascades_fine;
 }
 
 /// Settings of radiance cascades by the number of samples, 12 directions each, and the stride of
@@ -352,7 +345,9 @@ void require_baseline(Baseline baseline, const SceneData& scene, int bounces, Sh
                 "baseline {}: found a sky or emissive surfaces, which no RSM has; allowed: lights",
                 name);
   }
-  if ((lights_by_rsm(baseline) || has_probes(baseline) || has_cascades(baseline)) && bounces != 1)
+  const bool has_cascades =
+      baseline == Baseline::radiance_cascades || baseline == Baseline::radiance_cascades_fine;
+  if ((lights_by_rsm(baseline) || has_probes(baseline) || has_cascades) && bounces != 1)
     throw Error(ExitCode::usage, "baseline {}: found more than one bounce; allowed: bounces 1",
                 name);
 }
@@ -445,8 +440,8 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   cell.settings.insert(
       {{"budget_ms", budget.budget_ms}, {"stride", plan.stride}, {"threads", view.threads()}});
   if (baseline == Baseline::ddgi_converged) cell.settings["frames"] = kConvergedFrames;
-  if (filters(baseline))
-    cell.settings["filter_passes"] = baseline == Baseline::paths_filtered ? kPasses : 1;
+  if (baseline == Baseline::paths_filtered) cell.settings["filter_passes"] = kPasses;
+  if (baseline == Baseline::vpl_interleaved) cell.settings["filter_passes"] = 1;
   cell.from_events = false;
   cell.compute_units = static_cast<unsigned>(view.threads());
   cell.times = budget.shared;

@@ -18,12 +18,6 @@ constexpr std::size_t kCpuStrip = 32;
 // Few, long work-items: small groups spread them over all compute units.
 const cl::NDRange kSegments(16);
 
-std::size_t segment_length(std::size_t texels) {
-  std::size_t length = kMinSegment;
-  while (length * kMaxBlocks < texels) length *= 2;
-  return length;
-}
-
 }  // namespace
 
 Injector::Injector(Session& session, const Basis& basis, const InjectOptions& options)
@@ -110,7 +104,9 @@ void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int s
                     height = sampled_texels(surface.view.height, step), count = targets.size(),
                     texels = width * height * count;
   if (texels == 0) return;
-  const cl_uint length = segment_length(width * height), blocks = (texels + length - 1) / length;
+  cl_uint length = kMinSegment;
+  while (length * kMaxBlocks < width * height) length *= 2;
+  const cl_uint blocks = (texels + length - 1) / length;
   reserve(texels, blocks);
   std::vector<ClpvInjection> injections;
   for (const auto& [from, grid, volume, cascade] : targets)

@@ -26,9 +26,6 @@ const ProgramSource kSource{"inject/sort_by_cell.cl"};
 struct ChunkLimits {
   std::size_t least_texels, most;
 };
-ChunkLimits chunk_limits(const Device& device) {
-  return device.lanes == 1 ? ChunkLimits{64, 4096} : ChunkLimits{256, 512};
-}
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -60,7 +57,8 @@ void CellSorter::sort(std::size_t texels, std::size_t cells) {
   const cl_uint bits = std::bit_width(std::max<std::size_t>(cells, 2) - 1);
   const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits,
                 high_digits = 1u << (bits - low_bits);
-  const ChunkLimits limits = chunk_limits(session_.device());
+  const ChunkLimits limits =
+      session_.device().lanes == 1 ? ChunkLimits{64, 4096} : ChunkLimits{256, 512};
   const cl_uint chunk =
       std::min(kLongestChunk,
                round_up(std::max(limits.least_texels, (texels + limits.most - 1) / limits.most),

@@ -37,10 +37,6 @@ ClpvRegion place_of(const ClpvGrid& grid) {
   return place;
 }
 
-bool same_base(const ClpvRegion& a, const ClpvRegion& b) {
-  return a.cell == b.cell && std::equal(a.base, a.base + 3, b.base);
-}
-
 /// Returns the bounds of `box` extended by the reach of triangles [m].
 Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
   Bounds reach;
@@ -148,7 +144,8 @@ ClpvRegion VoxelField::whole(ClpvRegion place) const {
 /// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share
 /// none, if a grid moved and only one cascade is stored, or if more than one time step passed.
 ClpvRegion VoxelField::stale_cells(const State& state, ClpvRegion place) const {
-  if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1)
+  if (place.cell != state.place.cell || !std::ranges::equal(place.base, state.place.base) ||
+      scene_.clusters->instant() - state.instant > 1)
     return whole(place);
   for (int a = 0; a < 3; ++a) {
     place.moved[a] = place.first[a] - state.place.first[a];
