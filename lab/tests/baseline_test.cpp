@@ -45,8 +45,7 @@ using test::camera_at;
 using test::scene_file;
 
 /// The Cornell box with a budget from a frame, and its ground truth.
-class Cornell : public ::testing::Test {
- protected:
+struct Cornell : ::testing::Test {
   static void SetUpTestSuite() {
     scene_ = std::make_unique<SceneData>(load_scene(scene_file("cornell.json")));
     camera_ = scene_->camera("front");

@@ -133,8 +133,7 @@ TEST(Constants, RoundingErrorsOfZerosAreZero) {
 
 using ::testing::HasSubstr;
 
-class CentresFile : public ::testing::Test {
- protected:
+struct CentresFile : ::testing::Test {
   std::string file(const std::string& text) {
     const std::string path = (folder_.path() / "mine.json").string();
     std::ofstream(path) << text;

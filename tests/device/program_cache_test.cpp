@@ -33,8 +33,7 @@ std::size_t file_count(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-class ProgramCacheTest : public ::testing::Test {
- protected:
+struct ProgramCacheTest : ::testing::Test {
   test::TemporaryFolder folder_;
   ProgramCache cache_{folder_.path() / "made" / "on demand"};
 };
@@ -124,8 +123,7 @@ TEST_F(ProgramCacheTest, DriversThatKeepKernelsNeedNone) {
 }
 
 /// A session's program from the cache; its kernel writes another value than a compiled one.
-class CachedSession : public ProgramCacheTest {
- protected:
+struct CachedSession : ProgramCacheTest {
   CachedSession() {
     write_file(folder_.path() / "answer.cl",
                "__kernel void answer(__global int* a) { if (get_global_id(0) == 0) a[0] = "

@@ -314,8 +314,7 @@ TEST(ClError, NamesCodeCallAndAdvice) {
 
 using ::testing::Not;
 
-class DriverFiles : public ::testing::Test {
- protected:
+struct DriverFiles : ::testing::Test {
   /// An .icd file with the library of that name in the folder, or elsewhere.
   void add(const std::string& icd, const std::string& library) {
     folder_.write("vendors/" + icd, library + "\n");

@@ -43,8 +43,7 @@ struct Instants {
   double wall = 0, sun = 0;
 };
 
-class CachedFrame : public ::testing::Test {
- protected:
+struct CachedFrame : ::testing::Test {
   /// `change_scene`: of the scene file and the model.
   explicit CachedFrame(const std::function<void(RenderOptions&)>& change = {},
                        const std::function<void(json&, json&)>& change_scene = {})
@@ -253,8 +252,7 @@ TEST(FrameKeys, ChangeWithEachInput) {
 }
 
 /// Visible surfels are blockers, so blockers and propagation change with the view.
-class CachedPublishedFrame : public CachedFrame {
- protected:
+struct CachedPublishedFrame : CachedFrame {
   CachedPublishedFrame()
       : CachedFrame([](RenderOptions& options) {
           apply_preset(options, PresetName::paper);

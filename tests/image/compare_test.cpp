@@ -114,8 +114,7 @@ TEST(Compare, RejectsWhatCannotBeCompared) {
   EXPECT_NE(rejection(image, encoded).find("b.exr sRGB"), std::string::npos);
 }
 
-class CompareCommand : public testing::Test {
- protected:
+struct CompareCommand : ::testing::Test {
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
 
   /// Runs `clpv compare` and returns its exit code.

@@ -22,8 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class ImageFiles : public testing::Test {
- protected:
+struct ImageFiles : ::testing::Test {
   /// The error of read_image for a file of these bytes.
   std::string rejection(const std::string& name, const std::string& bytes) {
     write_file(folder_ / name, bytes);

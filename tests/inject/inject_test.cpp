@@ -125,8 +125,7 @@ bool all_zero(const Injection& injection) {
                      [](float v) { return v == 0.0f; });
 }
 
-class EachBasis : public testing::TestWithParam<const char*> {
- protected:
+struct EachBasis : ::testing::TestWithParam<const char*> {
   std::unique_ptr<Basis> basis = make_basis(GetParam());
 };
 INSTANTIATE_TEST_SUITE_P(Inject, EachBasis, testing::Values("sh2", "srbf8v2"),

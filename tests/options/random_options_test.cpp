@@ -117,8 +117,7 @@ std::string words_of_options(const OptionValues& given) {
   return words;
 }
 
-class RandomOptions : public ::testing::Test {
- protected:
+struct RandomOptions : ::testing::Test {
   RandomOptions() {
     for (const double size : {1e-6, 1e-3, 1.0, 1e3, 1e7}) write_scenes(size);
   }

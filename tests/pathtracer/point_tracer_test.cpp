@@ -214,8 +214,7 @@ nlohmann::json floor_scene() {
              {"illuminance_lux", 2}}}}};
 }
 
-class PathtraceCommand : public ::testing::Test {
- protected:
+struct PathtraceCommand : ::testing::Test {
   void SetUp() override {
     test::GltfBuilder floor;
     floor.square(2);
@@ -265,8 +264,7 @@ TEST_F(PathtraceCommand, ViewsWithoutRandomPathsTakeOne) {
 
 using pathtracer::PathTracerOptions;
 
-class CachedReference : public ::testing::Test {
- protected:
+struct CachedReference : ::testing::Test {
   void SetUp() override {
     const unsigned white = test::add_material(scene_, glm::vec3(0.8f));
     test::add_quad(scene_, {-2, -1, -4}, {4, 0, 0}, {0, 2, 0}, white);

@@ -209,8 +209,7 @@ TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
 }
 
 /// A scene file with that member "sky", and a map of two texels; the second has red `value`.
-class SkyFile : public ::testing::Test {
- protected:
+struct SkyFile : ::testing::Test {
   void write(const std::string& sky, float value,
              const std::vector<std::string>& channels = {"R", "G", "B"}) {
     Image image = make_image(2, 1, channels);

@@ -389,8 +389,7 @@ TEST(Stability, DarknessAndNothingHaveNoShare) {
 }
 
 /// The Cornell box, by a camera that moves.
-class SteadyFrame : public ::testing::Test {
- protected:
+struct SteadyFrame : ::testing::Test {
   static RenderOptions small_options() {
     RenderOptions options = test::small_sweep();
     options.width = 48, options.height = 27, options.cascade_size = 1.5;

@@ -156,8 +156,7 @@ void expect_all(const Transport& transport, const reference::Volume& geometry,
   }
 }
 
-class EachTransport : public ::testing::TestWithParam<TransportKind> {
- protected:
+struct EachTransport : ::testing::TestWithParam<TransportKind> {
   Transport transport(const Basis& basis, Blocking blocking = Blocking::one_sided) const {
     return make_transport(GetParam(), basis, {}, blocking);
   }

@@ -22,8 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class OutputFile : public testing::Test {
- protected:
+struct OutputFile : ::testing::Test {
   std::size_t entries() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }

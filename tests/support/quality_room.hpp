@@ -27,8 +27,7 @@ inline void write_room(const TemporaryFolder& folder) {
     "lights": [{"name": "sun", "kind": "directional", "direction": [0, -1, -0.5], "illuminance_lux": 5}]})");
 }
 
-class QualityCommand : public ::testing::Test {
- protected:
+struct QualityCommand : ::testing::Test {
   void SetUp() override { write_room(folder_); }
 
   std::string method = kSweepOfOne;
@@ -45,7 +44,6 @@ class QualityCommand : public ::testing::Test {
                       std::filesystem::directory_iterator{}));
   }
 
- private:
   TemporaryFolder folder_;
 };
 

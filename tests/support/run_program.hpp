@@ -20,8 +20,7 @@ namespace clpv::test {
 // A temporary folder for a test's files.
 
 /// A fresh folder of this object, removed with it.
-class TemporaryFolder : public ScratchFolder {
- public:
+struct TemporaryFolder : ScratchFolder {
   std::filesystem::path operator/(const std::string& name) const { return path() / name; }
 
   /// Writes a file, with the folders on its way; its path.

@@ -114,8 +114,7 @@ inline std::vector<std::string> smooth_bases() {
   return names;
 }
 
-class EveryBasis : public ::testing::TestWithParam<std::string> {
- protected:
+struct EveryBasis : ::testing::TestWithParam<std::string> {
   const std::unique_ptr<Basis> basis_ = make_basis(GetParam());
 };
 

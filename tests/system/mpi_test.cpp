@@ -22,8 +22,7 @@ const std::string kSmall =
     " --basis sh2 --gather all --blockers seen --grid 5 --cascades 1 --rsm-size 16 --shadow-size "
     "16 ";
 
-class Mpi : public ::testing::Test {
- protected:
+struct Mpi : ::testing::Test {
   void SetUp() override {
     if (std::string(CLPV_MPIEXEC).empty())
       GTEST_SKIP() << "clpv is built without MPI (Debian: apt install libopenmpi-dev)";

@@ -138,16 +138,14 @@ TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
 using test::must_run_here;
 using test::run_here;
 
-class Drawing : public ::testing::Test {
- protected:
+struct Drawing : ::testing::Test {
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
 
   test::TemporaryFolder folder_;
 };
 
 /// A box under a sky, which the published scheme does not have.
-class SkyReport : public Drawing {
- protected:
+struct SkyReport : Drawing {
   SkyReport() {
     std::filesystem::copy(CLPV_SOURCE_DIR "/scenes/cornell.glb", folder_.path());
     folder_.write("sky.json", R"({"model": "cornell.glb", "metres_per_unit": 1,

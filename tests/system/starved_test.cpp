@@ -22,8 +22,7 @@ using ::testing::Not;
 
 const std::string kFrame = " render " + test::kTiny + kSmallSteps;
 
-class Starved : public ::testing::Test {
- protected:
+struct Starved : ::testing::Test {
   static void SetUpTestSuite() {
     cache_ = new TemporaryFolder;
     run(program() + kFrame + "-o " +

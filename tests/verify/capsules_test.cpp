@@ -83,8 +83,7 @@ void alter(const Row& row, const fs::path& capsule) {
 }
 
 /// replay, built from the repository's file, and a small capsule.
-class Replay : public ::testing::Test {
- protected:
+struct Replay : ::testing::Test {
   void SetUp() override {
     ASSERT_TRUE(fs::exists(program()));
     folder_.write("small/a.cl",
