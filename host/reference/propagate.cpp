@@ -72,13 +72,11 @@ void attenuate(CellValues& light, const std::vector<CellValues>& links, std::siz
 }
 
 void add_faces(const FaceTransport& scheme, const Volume& from,
-               const std::vector<CellValues>& links, bool clamp, int channel, Volume& to) {
+               const std::vector<CellValues>& links, int channel, Volume& to) {
   for (std::size_t w = 0; w < scheme.faces.size(); ++w) {
     const Face& face = scheme.faces[w];
     CellValues flux = upstream_sum(from, channel, face.travel, face.flux);
-    if (clamp) {
-      for (double& value : flux) value = std::max(0.0, value);
-    }
+    for (double& value : flux) value = std::max(0.0, value);
     attenuate(flux, links, w);
     for (int i = 0; i < from.coefficients; ++i)
       add(flux, scheme.lobes(i, column_of(face.normal)), channel, i, to);
@@ -86,27 +84,27 @@ void add_faces(const FaceTransport& scheme, const Volume& from,
 }
 
 Volume step(const Transport& transport, const Volume& travelling,
-            const std::vector<CellValues>& links, bool clamp) {
+            const std::vector<CellValues>& links) {
   Volume next(travelling.n, travelling.coefficients, travelling.channels);
   for (int channel = 0; channel < next.channels; ++channel)
-    add_faces(faces_of(transport), travelling, links, clamp, channel, next);
+    add_faces(faces_of(transport), travelling, links, channel, next);
   return next;
 }
 
 }  // namespace
 
-Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
-                      bool clamp) {
-  return step(transport, travelling, link_transmittances(transport, geometry), clamp);
+Volume propagate_step(const Transport& transport, const Volume& travelling,
+                      const Volume* geometry) {
+  return step(transport, travelling, link_transmittances(transport, geometry));
 }
 
 Propagation propagate(const Transport& transport, const Volume& injected, const Volume* geometry,
-                      int iterations, bool clamp) {
+                      int iterations) {
   const std::vector<CellValues> links = link_transmittances(transport, geometry);
   Propagation result{injected, injected};
   for (int t = 1; t <= iterations; ++t) {
     result.travelling =
-        step(transport, result.travelling, t > 1 ? links : std::vector<CellValues>(), clamp);
+        step(transport, result.travelling, t > 1 ? links : std::vector<CellValues>());
     for (std::size_t i = 0; i < result.accumulated.values.size(); ++i) {
       result.accumulated.values[i] += result.travelling.values[i];
     }
@@ -122,27 +120,6 @@ std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
     });
   }
   return sum;
-}
-
-std::array<double, 3> escaping_energy(const Basis& basis, const Transport& transport,
-                                      const Volume& travelling) {
-  std::array<double, 3> lost{};
-  const FaceTransport& faces = faces_of(transport);
-  const auto outside = [&](const glm::ivec3& p) { return !travelling.inside(p.x, p.y, p.z); };
-  for_each_cell(travelling.n, [&](const glm::ivec3& p) {
-    for (int channel = 0; channel < travelling.channels; ++channel) {
-      double& sum = lost[channel];
-      std::vector<double> c;
-      for (const Face& face : faces.faces) {
-        if (!outside(p + face.travel)) continue;
-        if (c.empty()) c = travelling.cell(channel, p);
-        const double flux = std::max(0.0, dot(face.flux, c));
-        for (int i = 0; i < basis.size(); ++i)
-          sum += flux * faces.lobes(i, column_of(face.normal)) * basis.integrals()[i];
-      }
-    }
-  });
-  return lost;
 }
 
 }  // namespace clpv::reference
