@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "cli/render_request.hpp"
+#include "clpv/compare.hpp"
 #include "clpv/opencl.hpp"
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
@@ -46,16 +47,6 @@ TEST(Api, AnimatedScenesRenderAtAnyTime) {
   EXPECT_NE(renderer.irradiance({0, 0.5, 0}, {0, -1, 0}), light) << "of the last frame";
   EXPECT_THROW(renderer.render(View::full, {}, NAN), Error);
   EXPECT_THROW(renderer.render(View::full, {}, 1e9), Error);
-}
-
-/// Greatest difference of two images, relative to the greatest value of the second.
-double difference(const Image& a, const Image& b) {
-  double most = 0, greatest = 0;
-  for (std::size_t i = 0; i < b.pixels.size(); ++i) {
-    most = std::max(most, std::abs(double{a.pixels[i]} - b.pixels[i]));
-    greatest = std::max(greatest, std::abs(double{b.pixels[i]}));
-  }
-  return most / greatest;
 }
 
 Camera front() {
@@ -93,7 +84,7 @@ TEST(Api, CamerasOfASceneCanBeChanged) {
   added.name = "added";
   cameras.push_back(added);
   scene.set_cameras(cameras);
-  EXPECT_LT(difference(renderer.render(View::full, "added"), before), 1e-4);
+  EXPECT_LT(compare(renderer.render(View::full, "added"), before).max_error, 1e-4);
   EXPECT_THROW(scene.set_cameras({}), Error);
   cameras.push_back(added);
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { scene.set_cameras(cameras); }),

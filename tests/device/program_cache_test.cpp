@@ -28,11 +28,6 @@ void write_file(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-std::size_t file_count(const fs::path& folder) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
 struct ProgramCacheTest : ::testing::Test {
   test::TemporaryFolder folder_;
   ProgramCache cache_{folder_.path() / "made" / "on demand"};
@@ -45,7 +40,7 @@ TEST_F(ProgramCacheTest, ReturnsStoredPrograms) {
   EXPECT_EQ(cache_.load("key"), binary);
   EXPECT_TRUE(cache_.store("key", {7}));
   EXPECT_EQ(cache_.load("key"), Binary{7});
-  EXPECT_EQ(file_count(cache_.folder()), 1u) << "nothing is left beside";
+  EXPECT_EQ(std::distance(fs::directory_iterator(cache_.folder()), {}), 1) << "nothing beside";
   cache_.remove("key");
   EXPECT_FALSE(cache_.load("key").has_value());
 }

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/numbers.hpp"
@@ -283,10 +284,7 @@ struct CameraByNumbers : ::testing::Test {
 TEST_F(CameraByNumbers, RendersAndTraces) {
   const Image named = image("render " + kCornell + " --camera front" + kSmall);
   const Image given = image("render " + kCornell + kFront + kSmall);
-  double difference = 0;
-  for (std::size_t i = 0; i < named.pixels.size(); ++i)
-    difference = std::max(difference, std::abs(double{named.pixels[i]} - given.pixels[i]));
-  EXPECT_LT(difference, 1e-4);
+  EXPECT_LT(compare(named, "named", given, "given").max_error, 1e-4);
   EXPECT_THAT(given.metadata.at("camera"),
               HasSubstr("eye 0.278,0.273,-0.18 target 0.278,0.273,0.28"));
   const Image traced =

@@ -39,9 +39,7 @@ struct QualityCommand : ::testing::Test {
   }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t kept() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(file("cache/cells")),
-                      std::filesystem::directory_iterator{}));
+    return std::distance(std::filesystem::directory_iterator(file("cache/cells")), {});
   }
 
   TemporaryFolder folder_;
