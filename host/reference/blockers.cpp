@@ -360,6 +360,8 @@ constexpr int kCubePoints = 4;  // per cube along each axis
 // [cells]: points this far outside an edge count as inside.
 constexpr double kVisibilitySeam = 1e-3;
 constexpr double kVisibilityTolerance = 4e-4;  // [cells]: rounding error of float32
+// [cells]: centres lie off walls at round coordinates.
+constexpr glm::dvec3 kCentreShift(2.0e-3, 3.3e-3, 4.7e-3);
 
 using Corners = std::array<glm::dvec3, 3>;  // [cells] from the first cell's centre
 
@@ -392,8 +394,8 @@ void add(Occlusion& occluded, int n, const Corners& t, const glm::ivec3& cube) {
                         point / kCubePoints / kCubePoints);
     const glm::dvec3 to = glm::dvec3(cube) + (at + 0.5) / double{kCubePoints};
     for (int corner = 0; corner < 8; ++corner) {
-      const double margin =
-          crossing(t, glm::dvec3(cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), to);
+      const glm::ivec3 centre = cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      const double margin = crossing(t, glm::dvec3(centre) + kCentreShift, to);
       const std::uint8_t bit = 1u << corner;
       if (margin > kVisibilityTolerance)
         occluded.lower[first + static_cast<std::size_t>(point)] |= bit;

@@ -169,24 +169,28 @@ class Sweep {
                         position_in(coarse, fine, glm::clamp(cell, 0, n_ - 1)));
   }
 
-  /// Light of the coarser cascade at a place in its cells, which goes on to the place `inner`.
+  /// Light of the coarser cascade at a place in its cells, by the sample points there that see a
+  /// centre which points at the place `inner` see, too.
   double interpolated(const Volume& field, int channel, const glm::dvec3& at,
                       const glm::dvec3& inner) const {
     const std::vector<std::uint8_t>* occluded = boundary_.cascade->occluded;
+    const std::vector<SeenCentres> points = seen_centres(occluded, n_, at);
+    SeenCentres shared;
+    for (const SeenCentres& point : seen_centres(occluded, n_, inner))
+      shared.insert(point.begin(), point.end());
     double sum = 0, weights = 0;
-    int both = 0, either = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 up(corner & 1, corner >> 1 & 1, corner >> 2),
-          centre = glm::ivec3(glm::floor(at)) + up;
-      const glm::dvec3 w = 1.0 - glm::abs(at - glm::dvec3(centre));
-      const int seen = seen_points(occluded, n_, at, centre);
-      const double weight = w.x * w.y * w.z * seen;
-      weights += weight, sum += weight * field.cell(channel, centre)[0];
-      if (glm::any(glm::greaterThan(glm::abs(inner - glm::dvec3(centre)), glm::dvec3(1)))) continue;
-      const int there = seen_points(occluded, n_, inner, centre);
-      both += std::min(seen, there), either += std::max(seen, there);
+    int clear = 0, open = 0;
+    for (const SeenCentres& point : points) {
+      open += !point.empty();
+      if (std::ranges::none_of(point, [&](const auto& centre) { return shared.contains(centre); }))
+        continue;
+      ++clear;
+      for (const auto& [x, y, z] : point) {
+        const glm::dvec3 w = 1.0 - glm::abs(at - glm::dvec3(x, y, z));
+        weights += w.x * w.y * w.z, sum += w.x * w.y * w.z * field.cell(channel, {x, y, z})[0];
+      }
     }
-    return weights > 0 ? sum / weights * both / std::max(either, 1) : 0;
+    return weights > 0 ? sum / weights * clear / open : 0;
   }
 
   SweptCascade cascade_;

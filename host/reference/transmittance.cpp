@@ -66,19 +66,21 @@ double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::i
   return both / std::max<double>(either, 1);
 }
 
-int seen_points(const std::vector<std::uint8_t>* occluded, int n, const glm::dvec3& at,
-                const glm::ivec3& centre) {
-  const glm::ivec3 cube(glm::floor(at)), up = centre - cube;
+std::vector<SeenCentres> seen_centres(const std::vector<std::uint8_t>* occluded, int n,
+                                      const glm::dvec3& at) {
+  const glm::ivec3 cube(glm::floor(at)), octant(2.0 * (at - glm::floor(at)));
   const bool within = glm::clamp(cube, 0, std::max(n - 2, 0)) == cube;
-  if (occluded == nullptr || !within) return 8;
-  const glm::ivec3 octant(2.0 * (at - glm::floor(at)));
-  int seen = 0;
+  std::vector<SeenCentres> points(8);
   for (int i = 0; i < 8; ++i) {
     const glm::ivec3 place = 2 * octant + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
     const std::size_t point = first_point(n, cube) + (place.z * 4 + place.y) * 4 + place.x;
-    seen += ((*occluded)[point] >> (up.x + 2 * up.y + 4 * up.z) & 1) == 0;
+    const int hidden = occluded != nullptr && within ? (*occluded)[point] : 0;
+    for (int centre = 0; centre < 8; ++centre)
+      if ((hidden >> centre & 1) == 0)
+        points[i].insert(
+            {cube.x + (centre & 1), cube.y + (centre >> 1 & 1), cube.z + (centre >> 2)});
   }
-  return seen;
+  return points;
 }
 
 }  // namespace clpv::reference

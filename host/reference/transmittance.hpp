@@ -3,8 +3,10 @@
 // clamp(B, 0, 1) (docs/method.md, 'Blockers').
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <set>
 #include <vector>
 
 #include "reference/volume.hpp"
@@ -24,10 +26,13 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
 double seen_share(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
                   const glm::ivec3& side);
 
-/// Returns how many of the eight sample points in a cell of the next finer cascade, about `at` in
-/// cells from the first centre, see a centre; all outside the grid or without `occluded`
-/// (kernels/sweep/sweep_border.cl).
-int seen_points(const std::vector<std::uint8_t>* occluded, int n, const glm::dvec3& at,
-                const glm::ivec3& centre);
+/// Centres of cells, by their numbers along x, y, z.
+using SeenCentres = std::set<std::array<int, 3>>;
+
+/// Returns what each of the eight sample points in a cell of the next finer cascade sees of the
+/// centres about it. `at`: the cell, in cells from the first centre. Without `occluded` and outside
+/// the grid points see all (kernels/sweep/sweep_border.cl).
+std::vector<SeenCentres> seen_centres(const std::vector<std::uint8_t>* occluded, int n,
+                                      const glm::dvec3& at);
 
 }  // namespace clpv::reference

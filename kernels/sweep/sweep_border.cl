@@ -3,12 +3,12 @@
 // direction in the cells just outside the grid, interpolated between the coarser cells that these
 // cells see.
 //
-//   D = from_coarser sum_k w_k s_k D_k / sum_k w_k s_k    (radiance is equal in both:
-//                                                          D = L s^2 |w_m|; 0 if no cell is seen)
+//   D = T from_coarser sum_k w_k s_k D_k / sum_k w_k s_k   (radiance is equal in both:
+//                                                           D = L s^2 |w_m|; 0 if no cell is seen)
 //
 // over the eight coarser cells about a finer one: w_k is its trilinear weight, s_k the share of the
-// coarser cascade's sample points in the finer cell that see its centre. from_coarser is in
-// ClpvSweepDirection (docs/method.md, 'The sweep').
+// finer cell's sample points, of the coarser cascade, that see its centre. T is the share of points
+// that are not behind a wall. from_coarser is in ClpvSweepDirection (docs/method.md, 'The sweep').
 #include "shared/sweep.h"
 #include "sweep/sweep_border.h"
 #include "sweep/sweep_layout.h"
@@ -61,20 +61,15 @@ static inline ulong hidden_centres(__global const ushort* occluded, const uint c
   return rows[0] | (ulong)rows[2] << 16 | (ulong)rows[8] << 32 | (ulong)rows[10] << 48;
 }
 
-static inline int count_points(const ulong points, const int centre) {
-  return (int)popcount(points >> centre & 0x0101010101010101ul);
-}
-
-// Counts what each cell of a border sees.
+// Counts what each cell of a border sees, by those of its sample points that see a centre which the
+// nearest cell inside the grid sees, too: others are behind a wall.
 //
 // In:   occluded  visibility of cell centres (voxels/visibility.cl)
 //       cascade   number of the coarser cascade, whose bytes to read
-// Out:  hidden    for each face of each bin, a word per cell: points in it that do not see one of
+// Out:  hidden    for each face of each bin, a word per cell: 8 less the points that see each of
 //                 the eight coarser centres about it, 4 bits each; bit 2 of a centre's number is
 //                 upper across the face, bit 1 along columns, bit 0 along rows
-//       closed    float per cell: 1 - T for light from it to the nearest cell inside, T = sum of
-//                 min(a_k, b_k) / sum of max(a_k, b_k) over the centres k about both, which a_k
-//                 points of the one cell see and b_k of the other
+//       closed    float per cell: 1 - T
 // A work-item counts in a cell.
 __kernel void count_hidden_at_border(__constant const ClpvSweepBin* bins, const int dx,
                                      const int dy, const int dz, __global const ushort* occluded,
@@ -91,22 +86,30 @@ __kernel void count_hidden_at_border(__constant const ClpvSweepBin* bins, const 
              step = ((inner - 1) >> 1) - ((u - 1) >> 1);
   const ulong outside = hidden_centres(occluded, cascade, u),
               inside = hidden_centres(occluded, cascade, inner);
-  uint word = 0;
-  int both = 0, either = 0;
+  const ulong halves = inside & inside >> 32, quarters = halves & halves >> 16;
+  const uint seen_inside = ~(uint)(quarters & quarters >> 8);
+  uint shared = 0;  // centres that the inner cell sees, by their numbers here
   for (int centre = 0; centre < CLPV_CENTRES; ++centre) {
-    const int k = (centre >> cell.axis & 1) << 2 | (centre >> cell.row_axis & 1) << 1 |
-                  (centre >> cell.column_axis & 1);
-    const int count = count_points(outside, centre);
-    word |= (uint)count << 4 * k;
-    // The same centre in the inner cell's cube.
-    const int3 other = ((int3)(centre, centre >> 1, centre >> 2) & 1) - step;
-    if (any((other & ~1) != 0)) continue;
-    const int there = count_points(inside, other.x | other.y << 1 | other.z << 2);
-    both += 8 - max(count, there), either += 8 - min(count, there);
+    const int3 there = ((int3)(centre, centre >> 1, centre >> 2) & 1) - step;
+    if (all((there & ~1) == 0))
+      shared |= (seen_inside >> (there.x | there.y << 1 | there.z << 2) & 1) << centre;
+  }
+  uint word = 0x88888888u;
+  int clear = 0, open = 0;
+  for (int point = 0; point < 8; ++point) {
+    const uint seen = ~(uint)(outside >> 8 * point) & 255;
+    open += seen != 0;
+    if ((seen & shared) == 0) continue;
+    ++clear;
+    for (int centre = 0; centre < CLPV_CENTRES; ++centre) {
+      const int k = (centre >> cell.axis & 1) << 2 | (centre >> cell.row_axis & 1) << 1 |
+                    (centre >> cell.column_axis & 1);
+      word -= (seen >> centre & 1) << 4 * k;
+    }
   }
   const int at = hidden_index(face_of_bin, row, column);
   hidden[at] = word;
-  closed[at] = 1.0f - (float)both / (float)max(either, 1);
+  closed[at] = 1.0f - (float)clear / (float)max(open, 1);
 }
 
 // Numbers of the lower and upper coarser cells about W finer ones of a row, from number c on.

@@ -19,7 +19,6 @@ namespace {
 using namespace bake;
 using namespace test;
 using std::numbers::pi;
-using ::testing::HasSubstr;
 
 using Radiance = std::function<double(const glm::dvec3& w)>;
 
@@ -46,12 +45,6 @@ std::vector<glm::dvec3> of_direction(const ProbeFormat& format, const glm::dvec3
 }
 
 const glm::dvec3 kTilted = glm::normalize(glm::dvec3(2, 3, -1));
-
-TEST(ProbeFormats, HaveTheirNames) {
-  for (const std::string& name : probe_format_names()) EXPECT_EQ(probe_format(name).name, name);
-  EXPECT_THAT(error_of(ExitCode::usage, [] { probe_format("sh9"); }),
-              AllOf(HasSubstr("'sh9'"), HasSubstr("ambient-cube, ")));
-}
 
 // Radiance 1 from everywhere: irradiance pi on every surface.
 TEST(ProbeFormats, Furnace) {

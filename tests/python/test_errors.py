@@ -182,13 +182,6 @@ for call in (lambda: clpv.Material(texture=large), lambda: clpv.Image(large),
                    env=os.environ)
 
 
-def test_errors_of_files_have_their_keys(tmp_path):
-    file = tmp_path / "scene.json"
-    file.write_text('{"model": "a.glb", "cameras": [{"name": "a", "vertical_fov_degrees": 0}]}')
-    with pytest.raises(clpv.InputError, match="/cameras/0/vertical_fov_degrees: found 0"):
-        clpv.Scene(file)
-
-
 def test_lost_settings_are_named_when_a_scene_is_saved(tmp_path, caplog):
     scene = clpv.Scene(CORNELL)
     scene.lights = []
