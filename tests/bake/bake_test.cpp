@@ -45,13 +45,14 @@ TEST(Bake, InvalidProbesAreFilledFromTheirNeighbours) {
   GridLight light;
   light.count = 6;
   for (int i = 0; i < 5; ++i) light.integrals.insert(light.integrals.end(), 6, glm::vec3(i));
-  const auto first = [&](bool dilate) {
-    const BakedProbes baked = encoded(format, light, 0, grid, {1, 0, 0, 0, 1}, dilate);
+  const auto first = [&](bool dilate, const std::vector<std::uint8_t>& valid = {1, 0, 0, 0, 1}) {
+    const BakedProbes baked = encoded(format, light, 0, grid, valid, dilate);
     std::vector<float> red;
     for (std::size_t i = 0; i < 5; ++i) red.push_back(baked.coefficients[6 * i].x);
     return red;
   };
   EXPECT_THAT(first(true), ::testing::ElementsAre(0, 0, 2, 4, 4));
+  EXPECT_THAT(first(true, {0, 1, 1, 1, 1}), ::testing::ElementsAre(1, 1, 2, 3, 4));
   EXPECT_THAT(first(false), ::testing::ElementsAre(0, 1, 2, 3, 4));
 }
 
