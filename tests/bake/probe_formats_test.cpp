@@ -71,6 +71,10 @@ TEST(ProbeFormats, OneDirection) {
     EXPECT_NEAR(format.irradiance(c, kTilted).x, towards.first, 1e-9) << name;
     EXPECT_NEAR(format.irradiance(c, -kTilted).x, towards.second, 1e-9) << name;
   }
+  const ProbeFormat fit = probe_format("ambient-cube");
+  EXPECT_NEAR(fit.irradiance(of_direction(fit, kTilted), kTilted).x,
+              fit.irradiance(of_direction(fit, -kTilted), -kTilted).x, 1e-9)
+      << "the cube is symmetric";
   const ProbeFormat means = probe_format("ambient-cube-mean");
   const auto cube = of_direction(means, {0, -1, 0});
   EXPECT_NEAR(means.irradiance(cube, {0, -1, 0}).x, 1, 1e-12);
