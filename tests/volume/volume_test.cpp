@@ -101,7 +101,10 @@ TEST(Accumulator, UsesTheReportedMemory) {
     EXPECT_EQ(session.device_bytes(), before) << "given back";
     Accumulator accumulator(session);
     for (Volume* sum : {&one, &other}) {
+      sum->write(session, random_values(kShape));
+      const std::vector<float> kept = sum->read(session);
       accumulator.add_to_cells(*sum, [](const Volume&) {});
+      EXPECT_EQ(sum->read(session), kept) << "adding nothing";
       EXPECT_EQ(session.device_bytes() - before,
                 format.layout == Layout::image
                     ? stored_bytes(Accumulator::cells_format(format), kShape)
