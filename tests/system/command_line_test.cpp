@@ -101,7 +101,7 @@ TEST(HostileCommandLines, OfFrames) {
           {"--eye 0,0,0 --target 1,0,0 --fov 180", {"--fov"}},
           {"--sun 0,0,0", {"--sun"}},
           {"--medium=0,05,0,01", {"--medium"}},
-          {"--medium 1,1e7", {"--medium"}},
+          {"--medium 1,1e7", {"--medium: absorption"}},
           {"--light-scale 1e7", {"--light-scale", "1e-06..1000000"}},
           {"--light-scale 2 --sun 0,-1,0", {"--sun"}},
           {"--basis \377\376", {"basis"}},
