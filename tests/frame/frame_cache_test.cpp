@@ -292,7 +292,7 @@ TEST(FrameWork, DoesNotGrow) {
     unsigned launches, fills, waits, arguments;
   };
   const SceneData scene = load_scene(CLPV_SOURCE_DIR "/scenes/atrium.json");
-  for (const Row& row : {Row{1, 82, 1, 0, 92}, Row{8, 100, 1, 5, 107}}) {
+  for (const Row& row : {Row{1, 82, 1, 0, 92}, Row{8, 100, 1, 5, 111}}) {
     SCOPED_TRACE(row.lanes);
     Device device = choose_device();
     device.lanes = row.lanes;

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Odd EXR files are read, or rejected by name; test_score has compressed ones."""
 import struct
-import unittest
 import zlib
 
 import numpy
