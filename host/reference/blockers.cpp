@@ -360,8 +360,8 @@ constexpr int kCubePoints = 4;  // per cube along each axis
 // [cells]: points this far outside an edge count as inside.
 constexpr double kVisibilitySeam = 1e-3;
 constexpr double kVisibilityTolerance = 4e-4;  // [cells]: rounding error of float32
-// [cells]: centres lie off walls at round coordinates.
-constexpr glm::dvec3 kCentreShift(2.0e-3, 3.3e-3, 4.7e-3);
+// [cells]: centres and points lie off walls at round coordinates.
+constexpr glm::dvec3 kOffGrid(2.0e-3, 3.3e-3, 4.7e-3);
 
 using Corners = std::array<glm::dvec3, 3>;  // [cells] from the first cell's centre
 
@@ -394,8 +394,8 @@ void add(Occlusion& occluded, int n, const Corners& t, const glm::ivec3& cube) {
                         point / kCubePoints / kCubePoints);
     const glm::dvec3 to = glm::dvec3(cube) + (at + 0.5) / double{kCubePoints};
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 centre = cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-      const double margin = crossing(t, glm::dvec3(centre) + kCentreShift, to);
+      const double margin =
+          crossing(t, glm::dvec3(cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), to);
       const std::uint8_t bit = 1u << corner;
       if (margin > kVisibilityTolerance)
         occluded.lower[first + static_cast<std::size_t>(point)] |= bit;
@@ -426,7 +426,7 @@ Occlusion occlude(const SceneData& scene, const ClpvGrid& grid) {
   for (const Triangle& triangle : scene.triangles) {
     if ((scene.materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) continue;
     Corners t = corners_of(scene, triangle);
-    for (glm::dvec3& at : t) at = (at - vector(grid.origin)) / double{grid.cell} - 0.5;
+    for (glm::dvec3& at : t) at = (at - vector(grid.origin)) / double{grid.cell} - 0.5 - kOffGrid;
     const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])),
                      high = glm::max(t[0], glm::max(t[1], t[2]));
     const glm::ivec3 first(glm::clamp(glm::floor(low - kVisibilityTolerance), 0.0, n - 1.0)),

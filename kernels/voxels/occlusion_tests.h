@@ -32,13 +32,11 @@ __constant const Points points_y = (float16)(
     0.875f, 0.875f, 0.875f, 0.875f);
 #endif
 
-// W of the eight centres, from number `first` on, one per lane. They lie a little off the cells'
-// centres, so that walls at round coordinates contain none: such a centre would see both sides.
+// W of the eight centres, from number `first` on, one per lane.
 enum { CLPV_CENTRES = 8 };
 static inline Vec find_centres(const int first) {
   const intW number = first + lane_numbers();
-  return vec(to_realW(number & 1) + 2.0e-3f, to_realW((number >> 1) & 1) + 3.3e-3f,
-             to_realW(number >> 2) + 4.7e-3f);
+  return vec(to_realW(number & 1), to_realW((number >> 1) & 1), to_realW(number >> 2));
 }
 
 // A linear function gradient . x + offset of points x, one per centre.

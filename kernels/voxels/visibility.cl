@@ -63,11 +63,15 @@ static inline void occlude_cube(const float3 v0, const float3 v1, const float3 v
   }
 }
 
+// Off the grid [cells]: a centre on a wall, as at round coordinates, would see both sides.
+__constant const float3 off_grid = (float3)(2.0e-3f, 3.3e-3f, 4.7e-3f);
+
 // Position of a vertex in cells, from the centre of the cell at the region's base.
 static inline float3 to_cells(const ClpvRegion* region, __global const ClpvVertex* vertex) {
   const float3 position = (float3)(vertex->position[0], vertex->position[1], vertex->position[2]);
   const float3 base = (float3)(region->base[0], region->base[1], region->base[2]);
-  return clamp((position - base) / region->cell - 0.5f, -coordinate_limit, coordinate_limit);
+  return clamp((position - base) / region->cell - 0.5f - off_grid, -coordinate_limit,
+               coordinate_limit);
 }
 
 __kernel void occlude_cells(const ClpvRegion region, __global const uint* clusters,

@@ -397,7 +397,7 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
   const glm::vec3 up(0, 1, 0), skew(1, 1, 1), eye(-1, 1.6f, -1.2f);
   for (const auto& [degrees, axis] :
        {std::pair{0.0f, up}, std::pair{20.0f, up}, std::pair{20.0f, skew}}) {
-    for (const float shift : {0.0f, 0.19f}) {
+    for (const float shift : {0.0f, 0.19f, 0.5f}) {
       const glm::vec3 offset = kCell * glm::vec3(shift, 2 * shift, -shift);
       const SceneData scene = sealed_room(degrees, offset, 0, axis);
       EXPECT_LT(leak(scene, offset + eye, Bounces::one), 0.001) << degrees << ' ' << shift;
