@@ -176,8 +176,13 @@ class Sweep {
     const std::vector<std::uint8_t>* occluded = boundary_.cascade->occluded;
     const std::vector<SeenCentres> points = seen_centres(occluded, n_, at);
     SeenCentres shared;
-    for (const SeenCentres& point : seen_centres(occluded, n_, inner))
-      shared.insert(point.begin(), point.end());
+    const std::vector<SeenCentres> beyond = seen_centres(occluded, n_, inner);
+    for (int i = 0; i < 8; ++i) {
+      const glm::ivec3 upper(i & 1, i >> 1 & 1, i >> 2);
+      const bool in_half = glm::all(
+          glm::greaterThanEqual((inner - at) * (2.0 * glm::dvec3(upper) - 1.0), glm::dvec3(0)));
+      if (in_half) shared.insert(beyond[i].begin(), beyond[i].end());
+    }
     double sum = 0, weights = 0;
     int clear = 0, open = 0;
     for (const SeenCentres& point : points) {

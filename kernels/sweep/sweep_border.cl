@@ -61,8 +61,14 @@ static inline ulong hidden_centres(__global const ushort* occluded, const uint c
   return rows[0] | (ulong)rows[2] << 16 | (ulong)rows[8] << 32 | (ulong)rows[10] << 48;
 }
 
+// Bytes of a cell's points this side of its centre. `inwards`: sign of the way inside, 0: none;
+// `upper`: bytes of the upper points along its axis.
+static inline ulong near_points(const int inwards, const ulong upper) {
+  return inwards > 0 ? ~upper : (inwards < 0 ? upper : 0);
+}
+
 // Counts what each cell of a border sees, by those of its sample points that see a centre which the
-// nearest cell inside the grid sees, too: others are behind a wall.
+// nearest cell inside the grid sees beyond its own centre, too: others are behind a wall.
 //
 // In:   occluded  visibility of cell centres (voxels/visibility.cl)
 //       cascade   number of the coarser cascade, whose bytes to read
@@ -84,8 +90,13 @@ __kernel void count_hidden_at_border(__constant const ClpvSweepBin* bins, const 
                         (int3)(cell.layer), axes == cell.axis),
              inner = clamp(u - offset, 0, CLPV_GRID - 1) + offset,
              step = ((inner - 1) >> 1) - ((u - 1) >> 1);
+  // The inner cell counts by its points beyond its centre: walls may cut it on this side.
+  const int3 inwards = inner - u;
   const ulong outside = hidden_centres(occluded, cascade, u),
-              inside = hidden_centres(occluded, cascade, inner);
+              inside = hidden_centres(occluded, cascade, inner) |
+                       near_points(inwards.x, 0xff00ff00ff00ff00ul) |
+                       near_points(inwards.y, 0xffff0000ffff0000ul) |
+                       near_points(inwards.z, 0xffffffff00000000ul);
   const ulong halves = inside & inside >> 32, quarters = halves & halves >> 16;
   const uint seen_inside = ~(uint)(quarters & quarters >> 8);
   uint shared = 0;  // centres that the inner cell sees, by their numbers here

@@ -72,19 +72,6 @@ TEST_F(ImageFiles, ExrKeepsFloatsLayersAndOptions) {
   EXPECT_NE(message.find("'indirect'"), std::string::npos) << message;
 }
 
-TEST_F(ImageFiles, MetadataIsReadAlone) {
-  Image image = make_image(2, 2, {"R", "G", "B", "A"});
-  image.metadata = {{"basis", "sh2"}, {"scene", "a = b; c"}};
-  write_exr(folder_ / "a.exr", image);
-  image.encoding = Encoding::srgb;
-  write_png(folder_ / "a.png", image);
-  EXPECT_EQ(read_metadata(folder_ / "a.exr"), image.metadata);
-  EXPECT_EQ(read_metadata(folder_ / "a.png"), image.metadata);
-  EXPECT_EQ(read_image(folder_ / "a.png").metadata, image.metadata);
-  write_file(folder_ / "cut.exr", test::read_file(folder_ / "a.exr").substr(0, 200));
-  EXPECT_THROW(read_metadata(folder_ / "cut.exr"), Error);
-}
-
 TEST_F(ImageFiles, SameImageSameBytes) {
   Image image = sample(16, 16, {"R", "G", "B", "A"});
   image.metadata = {{"basis", "sh2"}};
