@@ -170,7 +170,7 @@ class Sweep {
   }
 
   /// Light of the coarser cascade at a place in its cells, by the sample points there that see a
-  /// centre which points at the place `inner` see, too.
+  /// centre which points beyond the place `inner` see, too.
   double interpolated(const Volume& field, int channel, const glm::dvec3& at,
                       const glm::dvec3& inner) const {
     const std::vector<std::uint8_t>* occluded = boundary_.cascade->occluded;

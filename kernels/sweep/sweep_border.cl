@@ -3,12 +3,11 @@
 // direction in the cells just outside the grid, interpolated between the coarser cells that these
 // cells see.
 //
-//   D = T from_coarser sum_k w_k s_k D_k / sum_k w_k s_k   (radiance is equal in both:
-//                                                           D = L s^2 |w_m|; 0 if no cell is seen)
+//   D = T from_coarser sum_k w_k s_k D_k / sum_k w_k s_k    (D = L s^2 |w_m|; 0 if none is seen)
 //
-// over the eight coarser cells about a finer one: w_k is its trilinear weight, s_k the share of the
-// finer cell's sample points, of the coarser cascade, that see its centre. T is the share of points
-// that are not behind a wall. from_coarser is in ClpvSweepDirection (docs/method.md, 'The sweep').
+// over the eight coarser cells k about a finer one: w_k is the trilinear weight, s_k the share of
+// the coarser cascade's sample points in the finer cell that see k's centre. T is the share of
+// points that no wall hides. from_coarser is in ClpvSweepDirection (docs/method.md, 'The sweep').
 #include "shared/sweep.h"
 #include "sweep/sweep_border.h"
 #include "sweep/sweep_layout.h"
@@ -32,8 +31,7 @@ static inline FaceCell face_cell(__constant const ClpvSweepBin* bin, const int f
                                  const int column, const int dx, const int dy, const int dz) {
   FaceCell cell;
   const bool plane_face = face == CLPV_BORDER_PLANE, row_face = face == CLPV_BORDER_ROW;
-  const int sign =
-      plane_face ? bin->plane_sign : (row_face ? bin->row_sign : bin->column_sign);
+  const int sign = plane_face ? bin->plane_sign : (row_face ? bin->row_sign : bin->column_sign);
   cell.axis = plane_face ? bin->plane_axis : (row_face ? bin->row_axis : bin->column_axis);
   cell.row_axis = plane_face ? bin->row_axis : bin->plane_axis;
   cell.column_axis = face == CLPV_BORDER_COLUMN ? bin->row_axis : bin->column_axis;
@@ -123,8 +121,8 @@ __kernel void count_hidden_at_border(__constant const ClpvSweepBin* bins, const 
   closed[at] = 1.0f - (float)clear / (float)max(open, 1);
 }
 
-// Numbers of the lower and upper coarser cells about W finer ones of a row, from number c on.
-// `from`: the lower one about the first.
+// Light of the lower and upper coarser cells about W finer ones of a row, from number c on. `at`:
+// the lower cell about the first.
 #if W == 8
 CLPV_INLINE void read_neighbours(CLPV_BUFFER_IN from, const int at, const int c, realW* lower,
                                  realW* upper) {
@@ -160,9 +158,8 @@ CLPV_INLINE void read_neighbours(CLPV_BUFFER_IN from, const int at, const int c,
 __kernel void sweep_border(__constant const ClpvSweepBin* bins,
                            __constant const ClpvSweepDirection* directions,
                            CLPV_BUFFER_IN halo_light, __global const uint* hidden,
-                           __global const float* closed,
-                           const ClpvSweepHalo halo, const int dx, const int dy, const int dz,
-                           const int first_lit, const int face_step,
+                           __global const float* closed, const ClpvSweepHalo halo, const int dx,
+                           const int dy, const int dz, const int first_lit, const int face_step,
                            __global float* plane_buffer, const int upstream,
                            CLPV_BUFFER_OUT border) {
   const int column = W * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1,

@@ -7,7 +7,7 @@ A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its
 double-sided sheet, or two sheets some cells of 12.5 / 32 m apart. `turned` is turned by 20 degrees
 about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a door between them,
 one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs.
-`hall` is 14 m wide, more than the finest cascade, `windows` the same with three windows. Each is lit by a sun, an even sky or a lamp outside.
+`hall` is 14 m wide, `windows` is a hall with three. All are lit by a sun, an even sky or a lamp.
 """
 import itertools
 import json

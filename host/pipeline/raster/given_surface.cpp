@@ -11,9 +11,11 @@ constexpr std::size_t kPixelsPerGroup = 64;
 const Surface& GivenSurface::take(const ClpvView& view, const GivenPixels& pixels) {
   const std::size_t count = std::size_t{pixels.width} * pixels.height;
   std::optional<Kernel>& kernel = pixels.points ? points_ : depths_;
-  ProgramSource source{"raster/given_surface.cl"};
-  source.literals.flag("CLPV_POINTS", pixels.points);
-  if (!kernel) kernel.emplace(session_, source, "given_surface");
+  if (!kernel) {
+    ProgramSource source{"raster/given_surface.cl"};
+    source.literals.flag("CLPV_POINTS", pixels.points);
+    kernel.emplace(session_, source, "given_surface");
+  }
   surface_.view = view;
   surface_.depth = surface_.position = {};
   session_.reserve(places_, count * (pixels.points ? sizeof(cl_float4) : sizeof(cl_float)),
