@@ -90,12 +90,9 @@ std::optional<glm::dvec3> clear_place(const glm::dvec3& at, const glm::dvec3& cl
   return glm::clamp(at, 0.0, n - 1.0) + clear * std::min(1.0, kMost / length);
 }
 
-/// Where the sample point next to clear_place() towards the end of the way, along each axis, is the
-/// nearest.
-std::optional<glm::dvec3> next_place(const glm::dvec3& at, const glm::dvec3& clear, int n) {
-  const std::optional<glm::dvec3> place = clear_place(at, clear, n);
-  if (!place) return std::nullopt;
-  return *place + 0.5 / double{kPoints} * glm::sign(clear);
+/// Where the sample point next to a clear_place() along each axis of `eye` is the nearest.
+glm::dvec3 next_place(const glm::dvec3& place, const glm::dvec3& eye) {
+  return place + 0.5 / double{kPoints} * glm::sign(eye);
 }
 
 /// Makes the sample one of the cells that a sample point sees, if it sees any.
@@ -129,14 +126,18 @@ unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& c
   return point && point->seen != 0 ? cells_from(*point, cube) : kAllPoints;
 }
 
-TrilinearSample visible_sample(const glm::dvec3& at, const glm::dvec3& clear, int n,
+TrilinearSample visible_sample(const glm::dvec3& at, const ClearWay& clear, double cell, int n,
                                const std::uint8_t* occluded, const Volume& light) {
   TrilinearSample sample = trilinear_sample(at, n);
   const glm::ivec3 cube = sample.cell[0];
   const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
   const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
-  std::optional<ClearPoint> point;
-  if (const auto place = clear_place(at, clear, n)) point = sample_point(*place, n, occluded);
+  std::optional<ClearPoint> point, next;
+  if (const auto place = clear_place(at, clear.way / cell, n)) {
+    point = sample_point(*place, n, occluded);
+    next = sample_point(next_place(*place, clear.eye), n, occluded);
+    if (point->seen == 0) point = next;
+  }
   const std::array<double, 8> visible =
       visible_shares(t, occluded + number, clear_cells(point, cube));
   double total = 0;
@@ -149,9 +150,8 @@ TrilinearSample visible_sample(const glm::dvec3& at, const glm::dvec3& clear, in
     use_point(sample, *point, n);
   }
   constexpr double kLeastOpen = 0.5;  // least_open of kernels/gather/gather_packed.h
-  const auto next = next_place(at, clear, n);
   if (next && light.channels > 3 && interpolated(light, 3, sample)[0] < kLeastOpen * kEvenLight)
-    use_point(sample, sample_point(*next, n, occluded), n);
+    use_point(sample, *next, n);
   return sample;
 }
 
@@ -185,9 +185,10 @@ bool rounding_decides(const glm::dvec3& at, int n) {
   return below.cube != above.cube || below.place != above.place;
 }
 
-bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n) {
-  const std::optional<glm::dvec3> place = clear_place(at, clear, n);
-  return place && (rounding_decides(*place, n) || rounding_decides(*next_place(at, clear, n), n));
+bool rounding_decides(const glm::dvec3& at, const ClearWay& clear, double cell, int n) {
+  const std::optional<glm::dvec3> place = clear_place(at, clear.way / cell, n);
+  return place &&
+         (rounding_decides(*place, n) || rounding_decides(next_place(*place, clear.eye), n));
 }
 
 bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint8_t* occluded) {
@@ -217,15 +218,15 @@ double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double 
 }
 
 TrilinearSample sample_of(const GatherOptions& options, const Cascade& cascade,
-                          const glm::dvec3& at, const glm::dvec3& clear) {
+                          const glm::dvec3& at, const ClearWay& clear) {
   if (options.gather != Gathering::visible) return trilinear_sample(at, options.grid);
-  return visible_sample(at, clear / double{cascade.grid.cell}, options.grid, cascade.occluded,
+  return visible_sample(at, clear, cascade.grid.cell, options.grid, cascade.occluded,
                         *cascade.accumulated);
 }
 
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset,
-                             const glm::dvec3& lift, const glm::dvec3& clear) {
+                             const glm::dvec3& lift, const ClearWay& clear) {
   RadianceField field;
   for (auto& channel : field) channel.assign(coefficients, 0.0);
   double rest = 1;  // weight of the coarser cascades
@@ -249,8 +250,10 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w) {
   std::vector<double> y(static_cast<std::size_t>(basis.size()));
   basis.evaluate(w, y);
-  const glm::dvec4 light = weighed(y, field);
-  return glm::dvec3(light) / over_furnace(light.w);
+  const glm::dvec4 light = weighed(y, field),
+                   even = y[0] * glm::dvec4(field[0][0], field[1][0], field[2][0], field[3][0]);
+  const double f = std::max(light.w, 0.0), rest = std::max(0.5 - f, 0.0);
+  return (glm::dvec3(light) + rest * glm::dvec3(even) / over_furnace(even.w)) / (f + rest);
 }
 
 glm::dvec4 raw_irradiance(const Basis& basis, const RadianceField& field,

@@ -28,17 +28,18 @@ struct TrilinearSample {
 TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 
 /// Returns the cells that light `at` [cells from the first centre] of a cascade: by trilinear
-/// weights times their visible shares, normalised. `clear`: a way [m] on which nothing stands, or
-/// 0. Only those sample points count that see a cell which the sample point 0.85 cells along it, or
-/// at its end, sees, too. Where too little is visible, the cells count that this point sees, or all
-/// where it sees none or without such a way; where the white furnace is dark, those that the next
-/// sample point towards the end sees. Trilinear weights alone if options.gather is Gathering::all.
+/// weights times their visible shares, normalised. Only those sample points count that see a cell
+/// which the sample point 0.85 cells along the clear way, or at its end, sees, too; where it sees
+/// none, the next one towards the eye takes its place. Where too little is visible, the cells count
+/// that this point sees, or all without such a way; where the white furnace is dark, those that the
+/// next one sees. Trilinear weights alone if options.gather is Gathering::all.
 TrilinearSample sample_of(const GatherOptions& options, const Cascade& cascade,
-                          const glm::dvec3& at, const glm::dvec3& clear);
+                          const glm::dvec3& at, const ClearWay& clear);
 
-/// Returns true if rounding decides which sample point lies at `at` [cells], or along `clear`.
+/// Returns true if rounding decides which sample point lies at `at` [cells], or along `clear` in
+/// cells of `cell` [m].
 bool rounding_decides(const glm::dvec3& at, int n);
-bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n);
+bool rounding_decides(const glm::dvec3& at, const ClearWay& clear, double cell, int n);
 
 /// Returns whether the sample points at `a` and `b` [cells] see a cell in common; true if they are
 /// farther apart than cells that have one.
@@ -61,8 +62,7 @@ using RadianceField = std::array<std::vector<double>, 4>;
 /// cascades' shares at `position` [m]. `clear`: sample_of().
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
-                             const glm::dvec3& lift = glm::dvec3(0),
-                             const glm::dvec3& clear = glm::dvec3(0));
+                             const glm::dvec3& lift = glm::dvec3(0), const ClearWay& clear = {});
 
 /// Returns L(p, w) [W/m^2/sr], light that travels along the unit vector w. May be negative.
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w);

@@ -39,7 +39,7 @@ glm::dvec4 irradiance(const Volume& volume, const TrilinearSample& sample,
 
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
-                  const glm::dvec3& normal, const glm::dvec3& lift, const glm::dvec3& clear) {
+                  const glm::dvec3& normal, const glm::dvec3& lift, const ClearWay& clear) {
   const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
   glm::dvec4 e(0);
   double rest = 1;  // weight of the coarser cascades
@@ -61,12 +61,12 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
 
 bool rounding_decides(const GatherOptions& options, const std::vector<Cascade>& cascades,
                       const glm::dvec3& position, double offset, const glm::dvec3& lift,
-                      const glm::dvec3& clear) {
+                      const ClearWay& clear) {
   return options.gather == Gathering::visible &&
          std::ranges::any_of(cascades, [&](const Cascade& cascade) {
            const glm::dvec3 at =
                (position - vector(cascade.grid.origin)) / double{cascade.grid.cell};
-           return rounding_decides(at + offset * lift - 0.5, clear / double{cascade.grid.cell},
+           return rounding_decides(at + offset * lift - 0.5, clear, cascade.grid.cell,
                                    options.grid);
          });
 }

@@ -40,12 +40,12 @@ struct NearField {
 
   double reach_at(const glm::dvec3& position) const;
   RadianceField field_at(const glm::dvec3& position, double offset, const glm::dvec3& lift,
-                         const glm::dvec3& clear = glm::dvec3(0)) const {
+                         const ClearWay& clear = {}) const {
     return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift,
                           clear);
   }
   bool unsure(const glm::dvec3& position, double offset, const glm::dvec3& lift,
-              const glm::dvec3& clear) const {
+              const ClearWay& clear) const {
     return rounding_decides(options.gather, scene.cascades, position, offset, lift, clear);
   }
   bool in_sight(NearPoint& point, const glm::dvec3& off) const;
@@ -171,7 +171,8 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
       const glm::dvec3 lift = offset * point.lift;
       const bool open = share == 0 || in_sight(point, point.reach * (lift + w));
       const glm::dvec3 end = point.position + point.reach * (open ? lift + w : w),
-                       clear = (point.position - end) / 2.0;
+                       middle = (point.position - end) / 2.0;
+      const ClearWay clear(middle, point.clear);
       point.difference += share * (radiance(basis, field_at(end, 0, point.normal, clear), -w) - v);
       point.uncertain = point.uncertain || (share > 0 && unsure(end, 0, point.normal, clear));
     }

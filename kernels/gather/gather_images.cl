@@ -21,7 +21,8 @@ typedef struct {
   float x[W], y[W], z[W];
 } SamplePoints;
 
-CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, SamplePoints* points) {
+CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, const Vec eye,
+                                    SamplePoints* points) {
   store_lanes(at.x, points->x);
   store_lanes(at.y, points->y);
   store_lanes(at.z, points->z);

@@ -7,10 +7,10 @@
 //
 // Where a way is known on which nothing stands, such as that to the eye, only those sample points
 // count that see a cell which the sample point 0.85 cells along it, or at its end, sees, too: no
-// point behind a wall beside the surface does. If fewer than 1/64 of the weights remain, the cells
-// count that this point sees, or all eight where it sees none or without such a way. Where the
-// white furnace is less than half as bright as in open space, as in a solid wall, the cells count
-// that the next sample point towards the end of the way along each axis sees.
+// point behind a wall beside the surface does. Where this point sees none, as in a wall, the next
+// sample point towards the eye along each axis takes its place. If fewer than 1/64 of the weights
+// remain, the cells count that it sees, or all eight without such a way. Where the white furnace is
+// less than half as bright as in open space, the cells count that the next point sees.
 // docs/method.md, 'Gathering'.
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b f)(r g b f). The eight
 // cells about a point are read as whole vectors. f is swept light of the white furnace, 0 after
@@ -82,22 +82,23 @@ CLPV_INLINE void store_clear_points(const Vec q, const intW x, const intW y, con
 }
 
 // Finds the sample points nearest to the place 0.85 cells along `clear` from p [cells], or at its
-// end, and those next to that place towards the end, along each axis. (x, y, z): p's cube.
+// end, and those next to that place along each axis of `eye`. (x, y, z): p's cube.
 CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
-                                   const Vec clear, SamplePoints* points) {
+                                   const Vec clear, const Vec eye, SamplePoints* points) {
   const float most = 0.85f;  // below 1: not two cubes away
   const realW square = vec_dot(clear, clear), scale =
       square > (realW)(most * most) ? 4.0f * most * rsqrt(square) : (realW)(4.0f);
   const intW known = (clear.x != ZERO) | (clear.y != ZERO) | (clear.z != ZERO);
   const Vec q = vec_add_scaled(vec_times(p, (realW)(4.0f)), scale, clear);
   store_clear_points(q, x, y, z, known, &points->clear);
-  const Vec towards = vec(sign(clear.x), sign(clear.y), sign(clear.z));
+  const Vec towards = vec(sign(eye.x), sign(eye.y), sign(eye.z));
   store_clear_points(vec_add_scaled(q, (realW)(0.5f), towards), x, y, z, known, &points->next);
 }
 
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
-// `clear`: ways [cells] on which nothing stands, or 0.
-CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, SamplePoints* points) {
+// `clear`: ways [cells] on which nothing stands, or 0; `eye`: directions towards the eye.
+CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, const Vec eye,
+                                    SamplePoints* points) {
   const float last = (float)(CLPV_GRID - 1);
   const intW highest = (intW)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0);
   const Vec p = vec(clamp_to(at.x, last), clamp_to(at.y, last), clamp_to(at.z, last));
@@ -116,7 +117,7 @@ CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, SamplePoints*
   store_lanes(q.x - to_realW(qx), points->visibility_x);
   store_lanes(q.y - to_realW(qy), points->visibility_y);
   store_lanes(q.z - to_realW(qz), points->visibility_z);
-  find_clear_points(p, x, y, z, clear, points);
+  find_clear_points(p, x, y, z, clear, eye, points);
 }
 
 // Trilinear weights of the eight corners about a point (x, y, z) in [0, 1]^3; corner bits: 1 x, 2
@@ -196,15 +197,18 @@ CLPV_INLINE float use_clear_point(const PackedCascade cascade, const ClearPoints
 // them. If less than min_visible is visible, the point along `clear` takes the place of this one.
 CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points,
                                    const int i, float8* weights, int* number) {
+  const bool hidden =
+      points->clear.cube[i] >= 0 && cells_seen(cascade.occluded, &points->clear, i) == 0;
+  const ClearPoints* clear = hidden ? &points->next : &points->clear;
   __global const uchar* at =
       cascade.occluded + (size_t)points->number[i] * 64 + points->visibility_point[i];
   const float8 from =
       corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
   const float8 visible =
-      *weights * visible_shares(at, from, clear_cells(cascade.occluded, &points->clear, i));
+      *weights * visible_shares(at, from, clear_cells(cascade.occluded, clear, i));
   const float total = sum_weights(visible);
   if (!(total > min_visible)) {
-    const float factor = use_clear_point(cascade, &points->clear, i, weights, number);
+    const float factor = use_clear_point(cascade, clear, i, weights, number);
     return factor > 0.0f ? factor : 1.0f;
   }
   *weights = visible;

@@ -4,8 +4,8 @@
 //
 // Before it come gather_packed.h or the functions of gather_images.cl, which define
 //   Sampled, SamplePoints                         coefficients at a point; W points
-//   find_sample_points(at, clear, &points)        W points [cells] from the first centre, clamped
-//                                                 to the grid; `clear`: gather_packed.h
+//   find_sample_points(at, clear, eye, &points)   W points [cells] from the first centre, clamped
+//                                                 to the grid; `clear`, `eye`: gather_packed.h
 //   float sample_cells(volume, points, i, &s)     sets s to the coefficients at point i; multiply
 //                                                 them by the returned factor
 //   float4 weigh(weights, sampled)                weights . coefficients for each channel, and 0
@@ -56,7 +56,7 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
   const Vec lift = lift_normal(g->surfaces.geometric, g->surfaces.normal);
   find_sample_points(
       find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), lift),
-      vec_times(g->clear, (realW)(per_cell)), &points);
+      vec_times(g->clear, (realW)(per_cell)), g->clear, &points);
   float shares[W];
   store_lanes(weight, shares);
   for (int i = 0; i < W; ++i) {

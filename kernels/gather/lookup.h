@@ -17,17 +17,19 @@ CLPV_INLINE Vec vec_at(const float3 v) {
 // E [W/m^2] of red, green and blue, and 0, on a surface at `position` [m] with the unit normal
 // `normal`.
 CLPV_INLINE float4 clpv_irradiance(CLPV_RADIANCE, const float3 position, const float3 normal) {
+  const Vec none = vec(ZERO, ZERO, ZERO);
   RadianceField field;
   sample_radiance(CLPV_PASS_RADIANCE, vec_at(position), (realW)(CLPV_GATHER_OFFSET), vec_at(normal),
-                  vec(ZERO, ZERO, ZERO), lane_numbers() == 0, &field);
+                  none, none, lane_numbers() == 0, &field);
   return field_irradiance(&field.at[0], normal.x, normal.y, normal.z);
 }
 
 // L [W/m^2/sr] of red, green and blue, and 0, at `position` [m], of light that travels along the
 // unit vector `direction`; may be negative.
 CLPV_INLINE float4 clpv_radiance(CLPV_RADIANCE, const float3 position, const float3 direction) {
+  const Vec none = vec(ZERO, ZERO, ZERO);
   RadianceField field;
-  sample_radiance(CLPV_PASS_RADIANCE, vec_at(position), ZERO, vec_at(direction),
-                  vec(ZERO, ZERO, ZERO), lane_numbers() == 0, &field);
-  return radiance_along(&field.at[0], direction.x, direction.y, direction.z);
+  sample_radiance(CLPV_PASS_RADIANCE, vec_at(position), ZERO, vec_at(direction), none, none,
+                  lane_numbers() == 0, &field);
+  return radiance_along(&field.at[0], basis_functions(direction.x, direction.y, direction.z));
 }

@@ -106,15 +106,16 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths,
     AirPoint p;
     find_air_point(&a, medium, place, k, CLPV_VOLUME_STEPS, &p);
     const Vec share = air_share(&p, medium, ZERO);
+    const Vec none = vec(ZERO, ZERO, ZERO);
     RadianceField field;
     sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), ZERO,
-                    a.direction, vec(ZERO, ZERO, ZERO), a.inside, &field);
+                    a.direction, none, none, a.inside, &field);
     float red[W], green[W], blue[W];
     for (int i = 0; i < W; ++i) {
       Coefficients y = basis_functions(-w.x[i], -w.y[i], -w.z[i]);
 #pragma unroll
       for (int j = 1; j < CLPV_N; ++j) y.c[j] *= j < 4 ? g : gg;
-      const float4 arriving = over_furnace(max(weigh(y, field.at[i]), 0.0f), 1.0f);
+      const float4 arriving = max(radiance_along(&field.at[i], y), 0.0f);
       red[i] = arriving.x, green[i] = arriving.y, blue[i] = arriving.z;
     }
     const Vec arriving = vec(load_lanes(red), load_lanes(green), load_lanes(blue));

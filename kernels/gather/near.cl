@@ -97,8 +97,8 @@ __kernel void near(const ClpvView view, __global const float* points,
   }
   const Vec eye = towards_eye(view, p.position);
   RadianceField here, there;
-  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift, eye, lit,
-                  &here);
+  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift, eye, eye,
+                  lit, &here);
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
@@ -126,14 +126,14 @@ __kernel void near(const ClpvView view, __global const float* points,
     const Vec from = vec_add_scaled(p.position, off_surface, vec_masked(open, p.lift)),
               end = vec_add_scaled(from, p.reach, w),
               clear = vec_times(vec_minus(p.position, end), (realW)(0.5f));
-    sample_radiance(CLPV_PASS_RADIANCE, end, ZERO, p.normal, clear, missed, &there);
+    sample_radiance(CLPV_PASS_RADIANCE, end, ZERO, p.normal, clear, eye, missed, &there);
     const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));
     float shares[W];
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);
     for (int i = 0; i < W; ++i) {
       if (!(shares[i] > 0.0f)) continue;
       const Coefficients along = basis_functions(back.x[i], back.y[i], back.z[i]);
-      volumes[i] += shares[i] * (over_furnace(weigh(along, there.at[i]), 1.0f) -  // 0: a hit
+      volumes[i] += shares[i] * (radiance_along(&there.at[i], along) -  // 0: a hit
                                  weigh(along, here.at[i]));
     }
     const Vec met = load_plane_vectors(radiances + 3 * k * r.plane, r.plane, r.at);

@@ -138,7 +138,7 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   RadianceField field;
   const Vec lift = lift_normal(s.surface.geometric, s.surface.normal);
   sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), lift,
-                  s.clear, s.hit, &field);
+                  s.clear, s.clear, s.hit, &field);
   const VecLanes n = unpack(s.hit, s.surface.normal);
   float x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {

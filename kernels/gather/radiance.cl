@@ -19,9 +19,9 @@ __kernel void radiance(const ClpvView view, __global const float4* places,
   Surfaces s;
   load_points(view, p, places, directions, &s);
   RadianceField field;
-  sample_radiance(CLPV_PASS_RADIANCE, s.position, ZERO, s.normal, vec(ZERO, ZERO, ZERO),
-                  (intW)(-1), &field);
+  const Vec none = vec(ZERO, ZERO, ZERO);
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, ZERO, s.normal, none, none, (intW)(-1), &field);
   const VecLanes w = unpack((intW)(-1), s.normal);
   for (uint i = 0; i < p.count; ++i)
-    radiances[s.first + i] = radiance_along(&field.at[i], w.x[i], w.y[i], w.z[i]);
+    radiances[s.first + i] = radiance_along(&field.at[i], basis_functions(w.x[i], w.y[i], w.z[i]));
 }

@@ -8,8 +8,9 @@
 // p cannot see left out, and means over cascades by their shares. Outside all cascades the furnace
 // is white. over_furnace() divides.
 //
-// L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The
-// sweep', 'Gathering'.
+// Where few surfaces are in sight along w, Y(w) . F < 1/2, the rest to 1/2 has the mean radiance of
+// all directions, C_0 / F_0. L may be negative: it is the light's projection on nine harmonics.
+// docs/method.md, 'The sweep', 'Gathering'.
 #pragma once
 
 #include "basis/basis.h"
@@ -38,10 +39,10 @@ CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* poin
 }
 
 // C at the points position + offset * s * lift of each cascade, s its cell; cascades have their
-// shares at `position`. `clear`: as in gather_packed.h, [m]. 0 outside the mask `wanted`.
+// shares at `position`. `clear` [m] and `eye`: as in gather_packed.h. 0 outside the mask `wanted`.
 CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW offset,
-                                 const Vec lift, const Vec clear, const intW wanted,
-                                 RadianceField* field) {
+                                 const Vec lift, const Vec clear, const Vec eye,
+                                 const intW wanted, RadianceField* field) {
   realW remaining = wanted ? (realW)(unit) : ZERO;
   for (int i = 0; i < W; ++i) {
     for (int j = 0; j < CLPV_PAIRS; ++j) field->at[i].pair[j] = 0.0f;
@@ -55,7 +56,7 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
     if (no_lane(weight > ZERO)) continue;
     SamplePoints points;
     find_sample_points(find_cascade_points(grid, position, offset, lift),
-                       vec_times(clear, (realW)(1.0f / grid.cell)), &points);
+                       vec_times(clear, (realW)(1.0f / grid.cell)), eye, &points);
     add_field(packed_cascade(c, area, unit CLPV_PASS_VOLUMES), &points, weight, field);
   }
   float outside[W];
@@ -63,10 +64,11 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
   for (int i = 0; i < W; ++i) field->at[i].pair[0].s3 += outside[i];
 }
 
-// L(p, w) for each channel, and 0; (x, y, z) = w.
-CLPV_INLINE float4 radiance_along(const Sampled* field, const float x, const float y,
-                                  const float z) {
-  return over_furnace(weigh(basis_functions(x, y, z), *field), 1.0f);
+// L(p, w) for each channel, and 0; y = Y(w).
+CLPV_INLINE float4 radiance_along(const Sampled* field, const Coefficients y) {
+  const float4 light = weigh(y, *field), mean = over_furnace(y.c[0] * field->pair[0].lo, 1.0f);
+  const float f = fmax(light.w, 0.0f), rest = fmax(0.5f - f, 0.0f);
+  return (float4)((light.xyz + rest * mean.xyz) * (1.0f / (f + rest)), 0.0f);
 }
 
 // E(p, n) for each channel, and 0; (x, y, z) = n.
