@@ -61,13 +61,14 @@ class SceneMaker {
   }
 
   /// Vertices on pixel centres and borders of an orthographic view of 1/8 m per pixel, surfaces at
-  /// equal depth, and triangles without area.
+  /// equal depth, a triangle beyond the guard band on all sides, and triangles without area.
   SceneData lattice() {
     SceneData scene = with_materials();
     for (int i = 0; i < 60; ++i) {
       const auto at = [&] { return glm::vec3(step(), step(), -2 - static_cast<float>(i % 3)); };
       add(scene, {at(), at(), at()});
     }
+    add(scene, {glm::vec3(-4e7f, -4e7f, -3), glm::vec3(4e7f, 0, -3), glm::vec3(-4e7f, 4e7f, -3)});
     add(scene, {glm::vec3(0, 0, -1), glm::vec3(1, 1, -1), glm::vec3(2, 2, -1)});
     add(scene, {glm::vec3(1, 0, -1), glm::vec3(1, 0, -1), glm::vec3(1, 0, -1)});
     return scene;
@@ -224,8 +225,7 @@ ClpvView lattice_view() {
   view.orthographic = 1;
   view.half_width = static_cast<float>(view.width) / 16;
   view.half_height = static_cast<float>(view.height) / 16;
-  view.near_depth = 2.5f;  // between the lattice's layers
-  view.far_depth = 3.5f;
+  view.near_depth = 2.5f, view.far_depth = 3.5f;  // between the lattice's layers
   return view;
 }
 
