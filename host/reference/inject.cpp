@@ -114,7 +114,7 @@ std::optional<glm::ivec3> nearest_in_sight(const glm::dvec3& point, int n,
     return true;
   };
   std::optional<glm::ivec3> nearest;
-  double least = 3;
+  double least = 6.75;  // from half a cell beyond the outermost centres, 1.5 cells along each axis
   for_each_cell(n, [&](const glm::ivec3& cell) {
     const glm::dvec3 off = glm::dvec3(cell) - at;
     if (glm::dot(off, off) > least || !sees(cell)) return;

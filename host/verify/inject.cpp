@@ -27,7 +27,7 @@ namespace {
 
 constexpr int kInjectGrid =
     5;  // odd and small: many texels per cell, several segments in some cells
-constexpr unsigned kWidth = 37, kHeight = 23;  // no multiples of a work-group
+constexpr unsigned kWidth = 61, kHeight = 47;  // no multiples of a work-group
 // [cells]; excludes points close to a cell boundary, where rounding decides. Exceeds the position
 // error of 8-bit normals.
 constexpr double kMargin = 0.01;
@@ -74,15 +74,15 @@ SurfaceImage random_surface(const Basis& basis, const InjectOptions& options, bo
                             bool light, RsmFormat format, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  constexpr float kDistance = 5, kSpread = 1.4f;
+  constexpr float kFar = 5;  // [m]; most texels are near this depth, many of them in a cell
   SurfaceImage surface;
-  surface.view = view_of_grid(orthographic, kDistance);
+  surface.view = view_of_grid(orthographic, kFar);
   const glm::vec3 forward(vector(surface.view.forward));
   const std::size_t count = std::size_t{kWidth} * kHeight;
   surface.normal.resize(count), surface.colour.resize(count), surface.depth.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const glm::vec3 around(uniform(random), uniform(random), uniform(random));
-    surface.depth[i] = uniform(random) > 0.8f ? 0 : kDistance + kSpread * uniform(random);
+    surface.depth[i] = uniform(random) > 0.8f ? 0 : kFar + std::pow(1.1f * uniform(random), 5.0f);
     surface.normal[i] = glm::vec4(glm::normalize(1.2f * around - forward), 0);
     surface.colour[i] =
         0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);

@@ -35,7 +35,7 @@ const Row kRows[] = {
 // The other kinds of outputs: floats and bits, of volumes and images.
 const Row kLongRows[] = {
     {Stage::rasterize, "camera/soup", "1.0f / facing", "2.0f / facing"},
-    {Stage::inject, "sh2/light/orthographic", "z += 0.5f", "z += 1.5f"},
+    {Stage::inject, "sh2/light/orthographic", "z += shift", "z += shift + 1"},
     {Stage::visibility, "triangles", "cube + 0.5f - v0", "cube + 2.5f - v0"},
     {Stage::propagate, "sh2/sampled/blockers/image/half", "arriving[n] = 0.0f",
      "arriving[n] = 1.0f"},
