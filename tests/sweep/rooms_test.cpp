@@ -379,17 +379,21 @@ SceneData sealed_room(float degrees, const glm::vec3& offset, float gap = 0,
   return scene;
 }
 
-/// Mean irradiance inside over that of the ground. `size`: edge of the finest cascade [m].
+/// Mean irradiance inside over that of the ground, or that of the brightest pixel where the finest
+/// cascade is narrower than the room. `size`: its edge [m].
 double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces, Near near = Near::off,
             float size = 16 * kCell) {
   RenderOptions options = small_sweep();
   options.bounces = bounces, options.near = near;
   options.cascades = size < kEdge ? 3 : 2, options.cascade_size = size;
-  options.width = 32, options.height = 18, options.rsm_size = 128, options.shadow_size = 256;
+  options.width = 64, options.height = 36, options.rsm_size = 128, options.shadow_size = 256;
   Frame frame(test_session(), scene, options);
   SceneCamera camera = camera_at(eye, {1, -0.2f, 1.2f});
   frame.render(camera);
-  return mean(frame.read(Show::irradiance), 0) * glm::length(kSun);
+  const std::vector<float> light = frame.read(Show::irradiance);
+  double most = 0;
+  for (std::size_t i = 0; i < light.size(); i += 4) most = std::max<double>(most, light[i]);
+  return (size < kEdge ? most : mean(light, 0)) * glm::length(kSun);
 }
 
 // By all bounces 0.32 without closed links, 0.023 if light starts half a cell off turned sheets.
@@ -408,16 +412,17 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
   }
 }
 
-// At a cascade's border light comes from the coarser cells that the border's cells see. From all
-// eight cells about each, 0.013 of the sky's light came in.
+// At a cascade's border light comes from the coarser cells that the border's cells see: from all
+// eight cells about each, 0.013 of the sky's came in. Ends of rays beside a wall thinner than the
+// spacing of sample points saw outside: 0.004 to 0.044.
 TEST(Leaks, ARoomWiderThanTheFinestCascadeIsDark) {
   for (const float degrees : {0.0f, 20.0f, 40.0f}) {
     for (const float size : {2.6f, 3.4f}) {
-      SceneData scene = sealed_room(degrees, {}, kCell);
+      SceneData scene = sealed_room(degrees, {}, 0.12f);
       scene.lights.clear();
       const double even = 1 / std::numbers::pi / glm::length(kSun);
       scene.sky = std::make_shared<Sky>(constant_sky(glm::vec3(even)));
-      EXPECT_LT(leak(scene, {-1, 1.6f, -1.2f}, Bounces::all, Near::off, size), 0.001)
+      EXPECT_LT(leak(scene, {-1, 1.6f, -1.2f}, Bounces::all, Near::traced, size), 0.001)
           << degrees << ' ' << size;
     }
   }
