@@ -66,12 +66,15 @@ void write_sheet(const CompareOptions& options, const Drawing& drawing, const Im
   drawing.draw(options.output);
 }
 
-/// Warns if the files were rendered and traced with different numbers of bounces.
-void warn_of_bounces(const CompareOptions& options, const Image& a, const Image& b) {
-  const auto in_a = a.metadata.find("bounces"), in_b = b.metadata.find("bounces");
-  if (in_a == a.metadata.end() || in_b == b.metadata.end() || in_a->second == in_b->second) return;
-  log_warning("{} has bounces {}, {} has bounces {}: they differ by more than their error",
-              options.a, in_a->second, options.b, in_b->second);
+/// Warns if the files were rendered and traced with different bounces, exposures or tone curves.
+void warn_of_inputs(const CompareOptions& options, const Image& a, const Image& b) {
+  for (const char* name : {"bounces", "exposure", "tonemap"}) {
+    const auto in_a = a.metadata.find(name), in_b = b.metadata.find(name);
+    if (in_a == a.metadata.end() || in_b == b.metadata.end() || in_a->second == in_b->second)
+      continue;
+    log_warning("{} has {} {}, {} has {}: they differ by more than their error", options.a, name,
+                in_a->second, options.b, in_b->second);
+  }
 }
 
 Image read_layer(const std::string& text, const std::string& usual) {
@@ -96,7 +99,7 @@ void run(const CompareOptions& options) {
     sheet.emplace("compare", "--output " + options.output);
   const Image a = read_layer(options.a, options.layer);
   const Image b = read_layer(options.b, options.layer);
-  warn_of_bounces(options, a, b);
+  warn_of_inputs(options, a, b);
   const Comparison comparison = compare(a, options.a, b, options.b, options.exposure.value_or(0));
   if (sheet) write_sheet(options, *sheet, a, b, comparison);
   if (!sheet && !options.output.empty())

@@ -165,8 +165,8 @@ void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOp
   for (const std::string& note : scene.notes) log_info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
-    log_info("cascades of {:.4g} to {:.4g} m round camera '{}'", options.cascade_size, coarsest,
-             camera.name);
+    log_info("cascades of {:.4g} to {:.4g} m round camera '{}', cells of {:.2g} m (--cascade-size)",
+             options.cascade_size, coarsest, camera.name, options.cascade_size / options.grid);
   }
   if (!cascades_meet(scene, camera.eye, options.cascades, options.cascade_size, options.grid)) {
     log_warning(

@@ -20,7 +20,7 @@
 #include "basis/harmonics.h"
 #elif CLPV_BASIS == CLPV_RADIAL
 #include "basis/radial.h"
-#else
+#elif CLPV_BASIS == CLPV_BINS
 #include "basis/bins.h"
 #endif
 

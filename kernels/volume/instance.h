@@ -22,7 +22,7 @@
 #include "volume/aos.h"
 #elif CLPV_LAYOUT == CLPV_TILED
 #include "volume/tiled.h"
-#else
+#elif CLPV_LAYOUT == CLPV_SOA
 #include "volume/soa.h"
 #endif
 #include "volume/buffer.h"

@@ -3,6 +3,7 @@
 
 #include "scene/scene.hpp"
 
+#include <charconv>
 #include <shared_mutex>
 
 #include "api/scene_contents.hpp"
@@ -106,9 +107,12 @@ void add_scene(py::module_& module) {
 
 int bounces_of(const std::variant<int, std::string>& given) {
   if (const int* number = std::get_if<int>(&given)) return *number;
-  if (const std::string& text = std::get<std::string>(given); text != "all")
+  const std::string& text = std::get<std::string>(given);
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text != "all" && (error != std::errc() || *end != 0))
     throw Error(ExitCode::usage, "bounces: found '{}', allowed: a number from 0, or 'all'", text);
-  return 0;
+  return number;
 }
 
 }  // namespace clpv::python
