@@ -4,6 +4,7 @@ scripts/tables shows them.
 
 rows.py has what is measured, once for both.
 """
+import argparse
 import hashlib
 import json
 import os
@@ -33,6 +34,16 @@ def run_clpv(*arguments, check=True):
     """Returns what clpv prints."""
     return subprocess.run([str(CLPV), *map(str, arguments)], stdout=subprocess.PIPE, text=True,
                           check=check, cwd=ROOT).stdout
+
+
+def parser_of(description, model=True, required=False):
+    """A parser of a script's arguments, with the model that most of them take."""
+    parser = argparse.ArgumentParser(sys.argv[0], description=description,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    if model:
+        parser.add_argument("--model", type=lambda given: pathlib.Path(given).resolve(),
+                            required=required, help="Sponza's glTF, of the Khronos sample models")
+    return parser
 
 
 def described():

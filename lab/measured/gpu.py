@@ -10,7 +10,6 @@ thorough, stages of --first first. A step that the time left does not hold is cu
 and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
 --model, else the atrium. --quick: small frames and the short check, for tests.
 """
-import argparse
 import hashlib
 import json
 import pathlib
@@ -19,7 +18,7 @@ import sys
 import tempfile
 import time
 
-from . import CLPV, ROOT, cells, described, json_lines, output, tables
+from . import CLPV, ROOT, cells, described, json_lines, output, parser_of, tables
 
 FRAMES = {
     "defaults": ["--width", "960", "--height", "540"],
@@ -110,8 +109,7 @@ def measure(options, folder):
         programs["before"] = options.before.resolve()
     scene = [*device, "render"]
     if options.model:
-        scene += [ROOT / "scenes/sponza.json", "--model", options.model.resolve(), "--camera",
-                  "curtains"]
+        scene += [ROOT / "scenes/sponza.json", "--model", options.model, "--camera", "curtains"]
     else:
         scene.append(ROOT / "scenes/atrium.json")
     scene += ["--frames", "2" if options.quick else "15"]
@@ -140,13 +138,11 @@ def measure(options, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
     parser.add_argument("--device", help="as of clpv --device")
     parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
     parser.add_argument("--before", type=pathlib.Path, help="an older program")
-    parser.add_argument("--model", type=pathlib.Path)
     parser.add_argument("--first", default="", help="stages to check first")
     parser.add_argument("--minutes", type=float, default=9)
     parser.add_argument("--quick", action="store_true")

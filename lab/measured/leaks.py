@@ -10,7 +10,6 @@ rooms have the mean over the positions, and path tracing's beside it. Bounces `d
 irradiance of direct light on 240x135 pixels of sealed rooms. FILE.json has a row for each number. Other options
 are those of `clpv render`. Needs a build.
 """
-import argparse
 import itertools
 import math
 import pathlib
@@ -18,7 +17,7 @@ import tempfile
 
 import numpy
 
-from . import json_lines, leak_scenes as scenes, native, output, rows as known, tables
+from . import json_lines, leak_scenes as scenes, native, output, parser_of, rows as known, tables
 from .cells import found
 
 clpv = native()
@@ -109,8 +108,7 @@ def number_of(bounces):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, model=False)
     parser.add_argument("--shapes", default=",".join(name for name, _ in scenes.shapes()))
     parser.add_argument("--lights", default="sun")
     parser.add_argument("--bounces", default="1,all")

@@ -16,7 +16,6 @@ earlier run. Files hold no samples and no host name. `clpv quality` caches groun
 the docs finished cells, so a second run of it is short. The second form needs Debian's Python and
 its packages.
 """
-import argparse
 import datetime
 import functools
 import itertools
@@ -28,8 +27,8 @@ import subprocess
 import sys
 import tempfile
 
-from . import (CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows,
-               run_clpv)
+from . import (CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, parser_of,
+               rooms, rows, run_clpv)
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
@@ -169,14 +168,11 @@ def measure_docs(model, parts):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("name", metavar="NAME",
                         help="folder in results/; docs: all that the docs' tables show")
     parser.add_argument("device", metavar="DEVICE", nargs="?",
                         help="as --device of clpv takes it (default: the first)")
-    parser.add_argument("--model",
-                        help="Sponza's glTF, of the Khronos sample models; for docs")
     parser.add_argument("--part", metavar="NAME", action="append",
                         help="of docs: a file of results/docs, repeatable (default: all)")
     arguments = parser.parse_intermixed_args()
@@ -191,7 +187,7 @@ def main():
         parser.error(f"NAME {arguments.name}: allowed: letters, digits, '.', '_' and '-'")
     folder = RESULTS / arguments.name
     if arguments.name == "docs":
-        measure_docs(pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
+        measure_docs(arguments.model, arguments.part or PARTS)
         print("results/docs is written; scripts/tables and lab/scripts/tables write the tables")
     else:
         measure_device(output.Folder(folder, "scripts/measure"))

@@ -12,7 +12,6 @@ lab/docs/other_methods.md; --picture only the one of images; --own renews the er
 the published scheme at 240x135 in each file there. lab/scripts/tables then writes the tables of
 lab/docs/results.md. DEVICE: as --device of clpv takes it; default: the first. Commit and build
 first (scripts/build), and keep the machine free of other work."""
-import argparse
 import json
 import os
 import pathlib
@@ -21,7 +20,7 @@ import tempfile
 
 import numpy
 
-from . import LAB, ROOT, charts
+from . import LAB, ROOT, charts, parser_of
 from .cells import found
 from .charts import clpv
 from .measure import FRAME_COUNT, measured_with, run, scenes_of, write
@@ -188,19 +187,16 @@ def draw_methods(model):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, required=True)
     parser.add_argument("device", metavar="DEVICE", nargs="?")
-    parser.add_argument("--model", type=pathlib.Path, required=True,
-                        help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--picture", action="store_true", help="the picture of images alone")
     parser.add_argument("--own", action="store_true", help="errors of clpv's own frames alone")
     arguments = parser.parse_args()
     if arguments.device:
         os.environ["CLPV_DEVICE"] = arguments.device
     if arguments.picture or arguments.own:
-        (draw_methods if arguments.picture else renew_own)(arguments.model.resolve())
+        (draw_methods if arguments.picture else renew_own)(arguments.model)
         return 0
-    measure_standing(FOLDER, arguments.model.resolve())
+    measure_standing(FOLDER, arguments.model)
     print("lab/results/quality is written; lab/scripts/tables writes lab/docs/results.md")
     return 0

@@ -10,7 +10,6 @@ DIR: a new or empty folder, or one that lab/scripts/suite wrote.
 The views are those of the standing benchmark and Sponza under three other suns. Needs a built clpv
 and oiiotool; traces the ground truths that `clpv quality` has not cached, a minute of processor
 time each. Sponza's model is not included. """
-import argparse
 import hashlib
 import io
 import json
@@ -19,7 +18,7 @@ import subprocess
 import tarfile
 import tempfile
 
-from . import ROOT, model_files, native, output
+from . import ROOT, model_files, native, output, parser_of
 from .measure import run
 
 clpv = native()
@@ -156,12 +155,9 @@ def write_suite(folder, tar, sponza, cache, names):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("--output", metavar="DIR", type=pathlib.Path, required=True,
                         help="folder of the suite; DIR.tar beside it")
-    parser.add_argument("--model", type=pathlib.Path,
-                        help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--scene", metavar="NAME", action="append", choices=SCENES,
                         help="some scenes, repeatable (default: all)")
     parser.add_argument("--cache", metavar="DIR", type=pathlib.Path,
@@ -175,6 +171,6 @@ def main():
     if packed.exists() and not (place / output.MARKER).exists():
         parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
     output.target_of(packed)
-    model, cache = (path and path.resolve() for path in (arguments.model, arguments.cache))
-    write_suite(output.Folder(place, "lab/scripts/suite"), packed, model, cache, names)
+    cache = arguments.cache and arguments.cache.resolve()
+    write_suite(output.Folder(place, "lab/scripts/suite"), packed, arguments.model, cache, names)
     return 0
