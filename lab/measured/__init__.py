@@ -30,10 +30,13 @@ def native():
     return clpv
 
 
-def run_clpv(*arguments, check=True):
-    """Returns what clpv prints."""
-    return subprocess.run([str(CLPV), *map(str, arguments)], stdout=subprocess.PIPE, text=True,
-                          check=check, cwd=ROOT).stdout
+def run_clpv(*arguments, check=True, cwd=ROOT):
+    """Returns what clpv prints. With `check` its own message and exit code end the script."""
+    done = subprocess.run([str(CLPV), *map(str, arguments)], stdout=subprocess.PIPE, text=True,
+                          check=False, cwd=cwd)
+    if check and done.returncode:
+        sys.exit(max(done.returncode, 1))
+    return done.stdout
 
 
 def parser_of(description, model=True, required=False):
