@@ -49,6 +49,12 @@ def parser_of(description, model=True, required=False):
     return parser
 
 
+def use_device(name):
+    """As --device of clpv takes it: for all programs that the script runs."""
+    os.environ["CLPV_DEVICE"] = name
+    return name
+
+
 def described():
     """Commit of this tree, as cmake/git_describe.cmake finds it: `unknown` without git, and in a
     source archive, which may lie in another repository."""
@@ -88,12 +94,12 @@ def json_lines(document):
     """JSON with a line for each row of its lists and for each member of its objects."""
     members = []
     for key, value in document.items():
-        if isinstance(value, dict) and value:
-            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}"
-                               for name, each in value.items())
-            members.append(f"{json.dumps(key)}: {{\n{lines}\n}}")
+        text = json.dumps(value)
+        if value and isinstance(value, dict):
+            lines = [f"{json.dumps(name)}: {json.dumps(each)}" for name, each in value.items()]
         else:
-            lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
-            members.append(f"{json.dumps(key)}: " +
-                           (f"[\n{lines}\n]" if lines else json.dumps(value)))
+            lines = list(map(json.dumps, value)) if isinstance(value, list) else []
+        if lines:
+            text = text[0] + "\n" + ",\n".join(lines) + "\n" + text[-1]
+        members.append(f"{json.dumps(key)}: {text}")
     return "{" + ",\n".join(members) + "}\n"
