@@ -4,6 +4,7 @@ scripts/tables shows them.
 
 rows.py has what is measured, once for both.
 """
+import argparse
 import hashlib
 import json
 import os
@@ -29,10 +30,29 @@ def native():
     return clpv
 
 
-def run_clpv(*arguments, check=True):
-    """Returns what clpv prints."""
-    return subprocess.run([str(CLPV), *map(str, arguments)], stdout=subprocess.PIPE, text=True,
-                          check=check, cwd=ROOT).stdout
+def run_clpv(*arguments, check=True, cwd=ROOT):
+    """Returns what clpv prints. With `check` its own message and exit code end the script."""
+    done = subprocess.run([str(CLPV), *map(str, arguments)], stdout=subprocess.PIPE, text=True,
+                          check=False, cwd=cwd)
+    if check and done.returncode:
+        sys.exit(max(done.returncode, 1))
+    return done.stdout
+
+
+def parser_of(description, model=True, required=False):
+    """A parser of a script's arguments, with the model that most of them take."""
+    parser = argparse.ArgumentParser(sys.argv[0], description=description,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    if model:
+        parser.add_argument("--model", type=lambda given: pathlib.Path(given).resolve(),
+                            required=required, help="Sponza's glTF, of the Khronos sample models")
+    return parser
+
+
+def use_device(name):
+    """As --device of clpv takes it: for all programs that the script runs."""
+    os.environ["CLPV_DEVICE"] = name
+    return name
 
 
 def described():
@@ -74,12 +94,12 @@ def json_lines(document):
     """JSON with a line for each row of its lists and for each member of its objects."""
     members = []
     for key, value in document.items():
-        if isinstance(value, dict) and value:
-            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}"
-                               for name, each in value.items())
-            members.append(f"{json.dumps(key)}: {{\n{lines}\n}}")
+        text = json.dumps(value)
+        if value and isinstance(value, dict):
+            lines = [f"{json.dumps(name)}: {json.dumps(each)}" for name, each in value.items()]
         else:
-            lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
-            members.append(f"{json.dumps(key)}: " +
-                           (f"[\n{lines}\n]" if lines else json.dumps(value)))
+            lines = list(map(json.dumps, value)) if isinstance(value, list) else []
+        if lines:
+            text = text[0] + "\n" + ",\n".join(lines) + "\n" + text[-1]
+        members.append(f"{json.dumps(key)}: {text}")
     return "{" + ",\n".join(members) + "}\n"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Numbers of the paper's claims, for docs/bases.md and docs/paper/figures.md: a function for each
-part of scripts/reproduce.
+part of scripts/reproduce, which gives its rows or a document of lists of them.
 
 All but lobes and tables are of Sponza. `arguments`: model, out (output.Folder) and
 quick, of scripts/reproduce. """
@@ -64,12 +64,11 @@ def gram(basis):
 
 
 def of_lobes(bases):
-    rows = []
     for name, basis in bases.items():
         up, oblique = map(basis.lobe, (ALONG_Z, OBLIQUE))
         rotated = basis.lobe(OBLIQUE, basis.clamped_cosine(OBLIQUE, TABLE_SIZES[0]))
         scaled = basis.lobe(ALONG_Z, gram(basis) @ basis.clamped_cosine(ALONG_Z))
-        rows.append({
+        yield {
             "basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
             "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
             "oblique_rotated_minimum": rotated["minimum"],
@@ -77,14 +76,13 @@ def of_lobes(bases):
             "up_without_inverse": scaled["relative_l2"], "mean": basis.mean_error,
             "minimum": up["minimum"], "energy_sampled_8": basis.energy(8),
             "energy_sampled_24": basis.energy(24)
-        })
-    return rows
+        }
 
 
 def lobes(_):
     """Errors of the named bases, and of other guesses."""
     guesses = {name: clpv.Basis(name, centres=centres) for name, centres in GUESSES.items()}
-    return {"sets": of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})}
+    return {"sets": list(of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses}))}
 
 
 def along_z(name, value):
@@ -101,31 +99,27 @@ def lambdas(arguments):
     views_of = Views(arguments)
     settings = {"preset": "paper", "cascade_size": 12.5, "iterations": 8}
     image_of_sh2 = views_of.image("curtains", basis="sh2", **settings)
-    rows = []
     for value in LAMBDAS:
         image = views_of.image("curtains", basis="srbf8v2", lambda_=value, **settings)
-        rows.append({
+        yield {
             "lambda": value, "sh2": clpv.Basis("sh2").lobe(ALONG_Z)["relative_l2"],
             **{name: along_z(name, value) for name in OF_THE_PAPER},
             "difference": clpv.compare(image, image_of_sh2).nrmse,
             "error": views_of.error(image, "curtains")
-        })
-    return rows
+        }
 
 
 def tables(_):
     """Lobes that are rotated through tables of H: errors along +z, and energies of the
     transport."""
-    rows = []
     for name, size in itertools.product((name for name in NAMED if name.startswith("srbf")),
                                         TABLE_SIZES):
         basis = clpv.Basis(name)
         lobe = basis.lobe(ALONG_Z, basis.clamped_cosine(ALONG_Z, size))
-        rows.append({"basis": name, "entries": size, "up": lobe["relative_l2"],
-                     "peak_error_degrees": lobe["peak_error_degrees"],
-                     "energy_sampled_8": basis.energy(8, table_size=size),
-                     "energy_sampled_24": basis.energy(24, table_size=size)})
-    return rows
+        yield {"basis": name, "entries": size, "up": lobe["relative_l2"],
+               "peak_error_degrees": lobe["peak_error_degrees"],
+               "energy_sampled_8": basis.energy(8, table_size=size),
+               "energy_sampled_24": basis.energy(24, table_size=size)}
 
 
 class Views:
@@ -174,16 +168,13 @@ class Views:
 def light(arguments):
     """Over steps, cascades and RSMs: how far apart the bases are, and how far off each is."""
     views_of = Views(arguments)
-    rows = []
     for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS,
                                                  STEPS):
         images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size,
                                  rsm_size=texels, iterations=steps) for name in BASES]
-        rows.append({"cascade_size": size, "rsm_size": texels, "iterations": steps,
-                     "difference": clpv.compare(images[1], images[0]).nrmse,
-                     **{name: views_of.error(image, "curtains")
-                        for name, image in zip(BASES, images)}})
-    return rows
+        yield {"cascade_size": size, "rsm_size": texels, "iterations": steps,
+               "difference": clpv.compare(images[1], images[0]).nrmse,
+               **{name: views_of.error(image, "curtains") for name, image in zip(BASES, images)}}
 
 
 # A fourth camera for the paired comparison, beside the scene's own three.
@@ -272,16 +263,14 @@ def texels(arguments):
                         if camera.light in ("", light.name)))
     sun /= np.linalg.norm(sun)
     renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
-    rows = []
     for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
         albedo = renderer.render("albedo", from_afar(camera, sun, size)).array[..., :3]
         normal = renderer.show("normal").array[..., :3].astype(float)
         flux = albedo.astype(float).sum(axis=-1) * np.clip(-(normal @ sun), 0, None)
         met, beside = neighbours((normal ** 2).sum(axis=-1) > 0.5)
         both, (a, b), (m, n) = met & beside, neighbours(flux), neighbours(normal)
-        rows.append({"size": size, "flux": abs(a - b)[both].mean() / a[both].mean(),
-                     "normals": ((m * n).sum(axis=-1)[both] < OTHER_WAY).mean()})
-    return rows
+        yield {"size": size, "flux": abs(a - b)[both].mean() / a[both].mean(),
+               "normals": ((m * n).sum(axis=-1)[both] < OTHER_WAY).mean()}
 
 
 # Path tracing shows the arcade most clearly in this light, of 24 suns and both sides of the nave:
@@ -321,18 +310,16 @@ def arcade(arguments):
         light = renderer.irradiance(points, [(0, 0, 1)] * ACROSS).astype(float).sum(axis=-1)
         return (light * wave).mean() / light.mean()
 
-    return list(views_of.with_blockers(number, (line * wave).mean() / line.mean(), {"grid": "64"}))
+    return views_of.with_blockers(number, (line * wave).mean() / line.mean(), {"grid": "64"})
 
 
 def lit(arguments):
     """Share of pixels with a surface that no direct light reaches."""
     views_of = Views(arguments)
     renderer = views_of.renderer(preset="fast")
-    rows = []
     for camera in (each.name for each in views_of.scene.cameras[:3]):
         albedo = renderer.render("albedo", camera).array[..., :3].sum(axis=-1) > 0
         direct = renderer.show("direct").array[..., :3].sum(axis=-1) > 0
-        rows.append({"camera": camera, "unlit": float((albedo & ~direct).sum() / albedo.sum())})
-    return rows
+        yield {"camera": camera, "unlit": float((albedo & ~direct).sum() / albedo.sum())}
 
 

@@ -8,16 +8,17 @@ DIR: output folder. Other options go to `clpv render`, those OF_BOTH to `clpv pa
 """
 import argparse
 import array
-import itertools
 import json
 import pathlib
 import struct
-import subprocess
 import sys
 import zlib
 
-from . import CLPV, ROOT, output
+from . import ROOT, output, run_clpv
 from clpv import ms_of
+
+sys.path.insert(0, str(ROOT / "lab/python"))
+from clpv_lab.score import exr  # noqa: E402  pylint: disable=wrong-import-position
 
 SCENE = ROOT / "scenes/atrium.json"
 EXPOSURE = -0.7  # [EV]
@@ -28,44 +29,6 @@ GAP = 4  # between the pictures [pixels]
 OWN = "-o", "--output", "--view", "--bounces", "--stats"
 OF_BOTH = ("--camera", "--eye", "--target", "--up", "--fov", "--near-plane", "--sun",
            "--light-scale", "--medium", "--time", "--model")
-
-
-def unpacked(block):
-    """Bytes of a compressed EXR block: deflate, differences of bytes, two halves interleaved."""
-    block = bytearray(zlib.decompress(block))
-    block[:] = itertools.accumulate(block, lambda value, step: value + step - 128 & 255)
-    even = (len(block) + 1) // 2
-    block[::2], block[1::2] = block[:even], block[even:]
-    return block
-
-
-def read_exr(file):
-    """(width, height, {channel: floats}) of an EXR that clpv wrote."""
-    data = file.read_bytes()
-    at, header = 8, {}
-    while data[at]:
-        name, _, rest = data[at:].split(b"\0", 2)
-        at = len(data) - len(rest) + 4
-        size = int.from_bytes(rest[:4], "little")
-        header[name], at = data[at:at + size], at + size
-    left, top, right, bottom = struct.unpack("<4i", header[b"dataWindow"])
-    width, height = right - left + 1, bottom - top + 1
-    planes, names = {}, header[b"channels"]
-    while names[0]:
-        name, rest = names.split(b"\0", 1)
-        planes[name.decode()], names = array.array("f"), rest[16:]
-    rows = 16 if header[b"compression"][0] else 1  # rows of a block
-    for i in range(-(-height // rows)):
-        start, = struct.unpack_from("<Q", data, at + 1 + 8 * i)
-        first, size = struct.unpack_from("<2i", data, start)
-        block = data[start + 8:start + 8 + size]
-        count = min(rows, top + height - first)
-        if size < 4 * width * count * len(planes):
-            block = unpacked(block)
-        for row, (name, plane) in itertools.product(range(count), enumerate(planes.values())):
-            begin = 4 * width * (row * len(planes) + name)
-            plane.frombytes(block[begin:begin + 4 * width])
-    return width, height, planes
 
 
 def displayed(x):
@@ -80,47 +43,28 @@ def of_both(options):
             for word in options[i:i + 1 + ("=" not in option)]]
 
 
-class Demo:
-    """Images in linear EXR, in a folder of scripts/demo."""
+def shown(file, layer):
+    """Rows of sRGB bytes."""
+    width, height, planes = exr.raw(file)
+    colours = [map(displayed, array.array("f", planes[f"{layer}.{c}"][1])) for c in "RGB"]
+    pixels = b"".join(map(bytes, zip(*colours)))
+    return [pixels[3 * width * y:3 * width * (y + 1)] for y in range(height)]
 
-    def __init__(self, folder, size, options):
-        self.folder, self.options, self.size = folder, options, size
-        self.stats = folder.file("frame.json")
 
-    def run(self, *arguments):
-        """Returns what clpv prints. Its own message and exit code end the demo."""
-        try:
-            return subprocess.run([CLPV, *map(str, arguments)], check=True, text=True,
-                                  stdout=subprocess.PIPE).stdout
-        except subprocess.CalledProcessError as error:
-            sys.exit(error.returncode if error.returncode > 0 else 1)
-
-    def image(self, command, scene, name, views, *options):
-        file = self.folder.file(name)
-        self.run(command, scene, "-o", file, "--view", *views, f"--width={self.size[0]}",
-                 f"--height={self.size[1]}", "--bounces=all", *options)
-        return file
-
-    def shown(self, file, layer):
-        """Rows of sRGB bytes."""
-        width, height, planes = read_exr(file)
-        pixels = b"".join(map(bytes, zip(*(map(displayed, planes[f"{layer}.{colour}"])
-                                           for colour in "RGB"))))
-        return [pixels[3 * width * y:3 * width * (y + 1)] for y in range(height)]
-
-    def make(self):
-        """Returns the pictures from left to right, and the error of a frame with all bounces."""
-        scene = json.loads(SCENE.read_text())
-        scene.update(model=str(SCENE.parent / scene["model"]), sky=SKY)
-        self.folder.write("day.json", json.dumps(scene, indent=2).encode())
-        day = self.folder.path / "day.json"
-        ours = self.image("render", day, "clpv.exr", ("full", "direct", "indirect"), "--stats",
-                          self.stats, *self.options)
-        truth = self.image("pathtrace", day, "truth.exr", ("full", "indirect"),
-                           f"--noise={NOISE}", *of_both(self.options))
-        errors = json.loads(self.run("compare", f"{ours}:indirect", f"{truth}:indirect"))
-        return [self.shown(ours, "direct"), self.shown(ours, "full"), self.shown(truth, "full")
-               ], errors["nrmse_valid"]
+def rendered(folder, size, options):
+    """Renders and path-traces into an output.Folder. Returns the pictures from left to right, and
+    the error of a frame with all bounces."""
+    scene = json.loads(SCENE.read_text())
+    scene.update(model=str(SCENE.parent / scene["model"]), sky=SKY)
+    folder.write("day.json", json.dumps(scene, indent=2))
+    day, ours, truth = (folder.path / name for name in ("day.json", "clpv.exr", "truth.exr"))
+    common = [f"--width={size[0]}", f"--height={size[1]}", "--bounces=all"]
+    run_clpv("render", day, "-o", ours, "--view", "full", "direct", "indirect", *common,
+             "--stats", folder.path / "frame.json", *options, cwd=None)
+    run_clpv("pathtrace", day, "-o", truth, "--view", "full", "indirect", *common,
+             f"--noise={NOISE}", *of_both(options), cwd=None)
+    errors = json.loads(run_clpv("compare", f"{ours}:indirect", f"{truth}:indirect"))
+    return [shown(ours, "direct"), shown(ours, "full"), shown(truth, "full")], errors["nrmse_valid"]
 
 
 def picture(pictures):
@@ -163,10 +107,9 @@ def main():
     if own := [option for option in options if option.split("=")[0] in OWN]:
         parser.error(f"found {own[0]}; allowed: options other than {', '.join(OWN)}")
     folder = output.Folder(arguments.folder, "scripts/demo")
-    demo = Demo(folder, (arguments.width, arguments.height), options)
-    pictures, error = demo.make()
+    pictures, error = rendered(folder, (arguments.width, arguments.height), options)
     folder.write("demo.png", picture(pictures))
-    stats = json.loads(demo.stats.read_text())
+    stats = json.loads((folder.path / "frame.json").read_text())
     print_stages(stats)
     milliseconds = ms_of(stats["times"], "frame")
     print(f"All bounces: {milliseconds:.0f} ms per frame of {arguments.width}x{arguments.height}; "

@@ -20,7 +20,7 @@ import pathlib
 import numpy as np
 
 from . import basis_figures, cells, claims, native
-from .rows import options_of
+from .rows import keywords_of
 from .sheets import sheet
 
 clpv = native()
@@ -50,8 +50,7 @@ class Frames:
 
     @functools.cache
     def rendered(self, options):
-        renderer = self.views.renderer(**self.size, **{"bounces": "auto", **{
-            name.replace("-", "_"): value for name, value in options_of(options).items()}})
+        renderer = self.views.renderer(**{**self.size, "bounces": "auto", **keywords_of(options)})
         return {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
 
     def image(self, layer, options):
@@ -101,17 +100,12 @@ def answer(frames, out):
 def brightness(frames):
     """Rows: mean luminance of the indirect light at both numbers of steps, and the share of pixels
     that the later steps darken."""
-    rows = []
     for variant, size in itertools.product(DATA["brightness"], SIZES):
         few, many = (frames.luminance(f"{variant} --cascade-size={size} --iterations={steps}")
                      for steps in STEPS)
-        options = {name.replace("-", "_"): value for name, value in options_of(variant).items()}
-        rows.append({
-            **options, "cascade_size": size, "mean_8": float(few.mean()),
-            "mean_24": float(many.mean()),
-            "darker": float((many < few - DARKER * few.mean()).mean())
-        })
-    return rows
+        yield {**keywords_of(variant), "cascade_size": size, "mean_8": float(few.mean()),
+               "mean_24": float(many.mean()),
+               "darker": float((many < few - DARKER * few.mean()).mean())}
 
 
 def paper(arguments):
@@ -134,4 +128,4 @@ def paper(arguments):
     answer(frames["curtains"], out)
     sheets = [name for name in out.written if "/" not in name]
     return {"sheets": sheets, "lobes": lobe_files,
-            "rows": [] if arguments.quick else brightness(frames["atrium"])}
+            "rows": [] if arguments.quick else list(brightness(frames["atrium"]))}

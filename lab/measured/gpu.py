@@ -10,7 +10,7 @@ thorough, stages of --first first. A step that the time left does not hold is cu
 and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
 --model, else the atrium. --quick: small frames and the short check, for tests.
 """
-import argparse
+import collections
 import hashlib
 import json
 import pathlib
@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-from . import CLPV, ROOT, cells, described, json_lines, output, tables
+from . import CLPV, ROOT, cells, described, json_lines, output, parser_of, tables, use_device
 
 FRAMES = {
     "defaults": ["--width", "960", "--height", "540"],
@@ -34,19 +34,19 @@ LEAST = 5  # [s] for a step
 
 
 class Clock:
-    """The time that is left."""
+    """The time that is left, and the program that is measured."""
 
-    def __init__(self, minutes):
-        self.end = time.monotonic() + 60 * minutes
+    def __init__(self, minutes, program):
+        self.end, self.program = time.monotonic() + 60 * minutes, program
 
-    def run(self, command):
-        """Runs a command: its stdout, and None or why it has none."""
+    def run(self, arguments, program=None):
+        """Runs clpv: its stdout, and None or why it has none."""
         left = self.end - time.monotonic()
         if left < LEAST:
             return "", "left out: no time left"
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=left,
-                                  check=False, cwd=ROOT)
+            done = subprocess.run([program or self.program, *arguments], capture_output=True,
+                                  text=True, timeout=left, check=False, cwd=ROOT)
         except subprocess.TimeoutExpired as error:
             return (error.stdout or b"").decode(), f"cut off after {left:.0f} s"
         if done.returncode == 0:
@@ -59,7 +59,7 @@ def frame(clock, program, scene, options, folder):
     row, hashes = {}, set()
     for _ in range(2):
         stats, image = folder / "stats.json", folder / "image.exr"
-        _, why = clock.run([program, *scene, *options, "-o", image, "--stats", stats])
+        _, why = clock.run([*scene, *options, "-o", image, "--stats", stats], program)
         if why:
             return {**dict.fromkeys(COUNTS), "times": [], "hash": "", "failed": why}
         hashes.add(hashlib.sha256(image.read_bytes()).hexdigest())
@@ -71,27 +71,24 @@ def frame(clock, program, scene, options, folder):
     return {**row, "hash": hashes.pop() if len(hashes) == 1 else "two runs differ"}
 
 
-def bench(clock, program, suite, device, *options):
+def bench(clock, suite, *options):
     """Rows of a suite of `clpv bench`: name, status, median, counts."""
-    text, why = clock.run([program, *device, "bench", suite, "--format", "json", *options])
+    text, why = clock.run(["bench", suite, "--format", "json", *options])
     if why:
         return [{"failed": why}]
     keys = "name", "status", "median", *COUNTS
     return [{key: row.get(key) for key in keys} for row in json.loads(text)["benchmarks"]]
 
 
-def check(clock, program, device, options, stages):
+def check(clock, options, stages):
     """Results of `clpv check` by status, of these stages or of all."""
     chosen = ["--stage", *stages] if stages else []
-    text, why = clock.run([program, *device, "check", "--format", "json", *options, *chosen])
+    text, why = clock.run(["check", "--format", "json", *options, *chosen])
     if not text or (why and "exit code" not in why):
         return {"failed": why}
     results = json.loads(text)["checks"]
-    found = {}
-    for result in results:
-        found[result["status"]] = found.get(result["status"], 0) + 1
-    bad = [result for result in results if result["status"] in ("wrong", "failed")]
-    return {"results": found, "bad": bad}
+    return {"results": collections.Counter(result["status"] for result in results),
+            "bad": [result for result in results if result["status"] in ("wrong", "failed")]}
 
 
 # Markdown: a row a frame, before and after; "-" for what failed.
@@ -103,18 +100,15 @@ MS = {"ms": "ms_of(times, 'frame') or None", "host": "ms_of(times, 'host') or No
 
 
 def measure(options, folder):
-    clock = Clock(options.minutes)
-    device = ["--device", options.device] if options.device else []
     programs = {"this": options.clpv.resolve()}
     if options.before:
         programs["before"] = options.before.resolve()
-    scene = [*device, "render"]
+    clock = Clock(options.minutes, programs["this"])
+    scene = ["render", "--frames", "2" if options.quick else "15"]
     if options.model:
-        scene += [ROOT / "scenes/sponza.json", "--model", options.model.resolve(), "--camera",
-                  "curtains"]
+        scene += ["scenes/sponza.json", "--model", options.model, "--camera", "curtains"]
     else:
-        scene.append(ROOT / "scenes/atrium.json")
-    scene += ["--frames", "2" if options.quick else "15"]
+        scene.append("scenes/atrium.json")
     # Frames first: they are what a GPU is lent for. Each of both programs in turn.
     frames = []
     for name, chosen in FRAMES.items():
@@ -122,31 +116,28 @@ def measure(options, folder):
         for program, path in programs.items():
             frames.append({"frame": name, "program": program,
                            **frame(clock, path, scene, size, folder)})
-    this, few = programs["this"], ["--repetitions", "2"] if options.quick else []
-    text, why = clock.run([this, "devices", "--format", "json"])
+    few = ["--repetitions", "2"] if options.quick else []
+    text, why = clock.run(["devices", "--format", "json"])
     report = {
         "context": {"commit": described(), "scene": "Sponza" if options.model else "atrium",
                     "quick": options.quick, "before": str(options.before or "")},
         "devices": why or json.loads(text),
         "frames": frames,
-        "moving": bench(clock, this, "frame", device, "--filter",
-                        "^frame/sh2.*/best/recompute:nothing", *few),
+        "moving": bench(clock, "frame", "--filter", "^frame/sh2.*/best/recompute:nothing", *few),
     }
     thorough = [] if options.quick else ["--thorough"]
     stages = [stage for stage in options.first.split(",") if stage]
-    report["check first"] = check(clock, this, device, thorough, stages) if stages else {}
-    report["check"] = {} if options.quick and stages else check(clock, this, device, thorough, [])
+    report["check first"] = check(clock, thorough, stages) if stages else {}
+    report["check"] = {} if options.quick and stages else check(clock, thorough, [])
     return report
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
-    parser.add_argument("--device", help="as of clpv --device")
+    parser.add_argument("--device", type=use_device, help="as of clpv --device")
     parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
     parser.add_argument("--before", type=pathlib.Path, help="an older program")
-    parser.add_argument("--model", type=pathlib.Path)
     parser.add_argument("--first", default="", help="stages to check first")
     parser.add_argument("--minutes", type=float, default=9)
     parser.add_argument("--quick", action="store_true")

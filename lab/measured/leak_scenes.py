@@ -25,8 +25,8 @@ GREY = (0.8, 0.8, 0.8)
 TURN = 20  # degrees
 STEP = 2.0**-13  # of positions [m], so that the last bit of a machine's sine changes nothing
 SUN = [0.4, -1, 0.3]
-# Distance of the outer from the inner sheet in cells; None: one sheet.
-WALLS = {"sheet": None, "wall0.03": 0.03, "wall0.1": 0.1, "wall0.5": 0.5, "wall1": 1, "wall2": 2,
+# Distance of the outer from the inner sheet in cells; 0: one sheet.
+WALLS = {"sheet": 0, "wall0.03": 0.03, "wall0.1": 0.1, "wall0.5": 0.5, "wall1": 1, "wall2": 2,
          "wall3": 3}
 
 
@@ -46,14 +46,6 @@ def box(low, high, inwards, without=()):
     sides = [(axis, side) for axis in range(3) for side in (0, 1) if (axis, side) not in without]
     return [rectangle(axis, (low, high)[side][axis], low, high, 1 if side != inwards else -1)
             for axis, side in sides]
-
-
-def walls(thickness, low=LOWER, high=UPPER):
-    faces = box(low, high, True)
-    if thickness is not None:
-        t = thickness * CELL
-        faces += box([a - t for a in low], [a + t for a in high], False)
-    return faces
 
 
 def with_slit(faces):
@@ -112,21 +104,22 @@ def quads(air, solid):
             yield corners if step[tuple(cell)] < 0 else corners[::-1]
 
 
-def hall(windows):
-    low, high = HALL
-    outer = [a - WALL for a in low], [a + WALL for a in high]
-    return [face.tolist() for face in quads([HALL, *windows], outer)]
+def walls(thickness, room=(LOWER, UPPER), windows=()):
+    """Faces of a room's walls of that thickness [m]; 0: one sheet."""
+    low, high = room
+    outer = [a - thickness for a in low], [a + thickness for a in high]
+    return [face.tolist() for face in quads([room, *windows], outer if thickness else None)]
 
 
 def shapes():
-    yield from ((name, walls(thickness)) for name, thickness in WALLS.items())
-    yield "turned", [turned(face, TURN) for face in walls(None)]
-    yield "slit", with_slit(walls(None))
+    yield from ((name, walls(cells * CELL)) for name, cells in WALLS.items())
+    yield "turned", [turned(face, TURN) for face in walls(0)]
+    yield "slit", with_slit(walls(0))
     yield "door", two_rooms()
     yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])
     yield "legs", legs()
-    yield "hall", hall([])
-    yield "windows", hall(WINDOWS)
+    yield "hall", walls(WALL, HALL)
+    yield "windows", walls(WALL, HALL, WINDOWS)
 
 
 def inner_points(shape, count):

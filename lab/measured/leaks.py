@@ -10,16 +10,15 @@ rooms have the mean over the positions, and path tracing's beside it. Bounces `d
 irradiance of direct light on 240x135 pixels of sealed rooms. FILE.json has a row for each number. Other options
 are those of `clpv render`. Needs a build.
 """
-import argparse
 import itertools
 import math
 import pathlib
+import re
 import tempfile
 
 import numpy
 
-from . import json_lines, leak_scenes as scenes, native, output, rows as known, tables
-from .cells import found
+from . import json_lines, leak_scenes as scenes, native, output, parser_of, rows as known, tables
 
 clpv = native()
 POINTS = 5  # along each edge of a face
@@ -50,16 +49,15 @@ class Room:
         self.points = points + numpy.array(offset)
 
     def leak(self, bounces, options):
-        """Indirect light inside [%]."""
-        with clpv.Renderer(self.scene, bounces=bounces, **options) as renderer:
+        """Indirect light inside, or with bounces "direct" direct light [%]."""
+        if bounces != "direct":
+            options = {**options, "bounces": bounces}
+        with clpv.Renderer(self.scene, **options) as renderer:
+            if bounces == "direct":
+                image = renderer.render("direct", size=SIZE).array
+                return share(self.light, math.pi / scenes.GREY[1] * image)
             renderer.update(self.scene.cameras[0].eye)
             return share(self.light, renderer.irradiance(self.points, self.normals))
-
-    def direct(self, options):
-        """Direct light inside [%]."""
-        with clpv.Renderer(self.scene, **options) as renderer:
-            image = renderer.render("direct", size=SIZE).array
-            return share(self.light, math.pi / scenes.GREY[1] * image)
 
     def traced(self, bounces):
         """Indirect light inside by path tracing [%]."""
@@ -77,11 +75,9 @@ def measure(shapes, columns, count, options):
         for offset in offsets(count):
             scenes.write(folder, offset, shapes)
             for shape, (light, n) in itertools.product(shapes, columns):
-                room = Room(folder, shape, light, offset)
-                if n != "direct":
+                if n != "direct" or shape not in known.OPEN_ROOMS:
+                    room = Room(folder, shape, light, offset)
                     found.setdefault((shape, light, n), []).append(room.leak(n, options))
-                elif shape not in known.OPEN_ROOMS:
-                    found.setdefault((shape, light, n), []).append(room.direct(options))
         for (shape, light, n), leaks in found.items():
             row = {"shape": shape, "light": light, "bounces": n, "leak": max(leaks)}
             if shape in known.OPEN_ROOMS:
@@ -93,24 +89,16 @@ def measure(shapes, columns, count, options):
 
 def lines(rows):
     """Cells of a table: a line for each shape."""
-    def cell(shape, light, bounces):
-        row = found(rows, shape=shape, light=light, bounces=bounces)
-        truth = f" ({row['truth']:.2g})" if row and "truth" in row else ""
-        return f"{row['leak']:.2g}{truth}" if row else "-"
-
-    columns = dict.fromkeys((row["light"], row["bounces"]) for row in rows)
-    return [["room", *(f"{light}, {bounces}" for light, bounces in columns)],
-            *([shape, *(cell(shape, *column) for column in columns)]
-              for shape in dict.fromkeys(row["shape"] for row in rows))]
-
-
-def number_of(bounces):
-    return bounces if bounces in ("all", "direct") else int(bounces)
+    columns = dict.fromkeys((f"{row['light']}, {row['bounces']}" for row in rows), "-")
+    cells = {row["shape"]: dict(columns) for row in rows}
+    for row in rows:
+        truth = f" ({row['truth']:.2g})" if "truth" in row else ""
+        cells[row["shape"]][f"{row['light']}, {row['bounces']}"] = f"{row['leak']:.2g}{truth}"
+    return [["room", *columns], *([shape, *line.values()] for shape, line in cells.items())]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, model=False)
     parser.add_argument("--shapes", default=",".join(name for name, _ in scenes.shapes()))
     parser.add_argument("--lights", default="sun")
     parser.add_argument("--bounces", default="1,all")
@@ -121,17 +109,13 @@ def main():
     shapes = arguments.shapes.split(",")
     if unknown := set(shapes) - set(names):
         parser.error(f"--shapes {','.join(unknown)}: allowed: {', '.join(names)}")
-    options = {}
-    for other in others:
-        name, equals, value = other.removeprefix("--").partition("=")
-        if not equals:
-            parser.error(f"{other}: allowed: --OPTION=VALUE of clpv render")
-        options[name.replace("-", "_")] = value
-    columns = [(light, number_of(n)) for light in arguments.lights.split(",")
-               for n in arguments.bounces.split(",")]
+    if wrong := [other for other in others if not re.fullmatch("--.+=.*", other)]:
+        parser.error(f"{wrong[0]}: allowed: --OPTION=VALUE of clpv render")
+    bounces = [int(n) if n.isdigit() else n for n in arguments.bounces.split(",")]
+    columns = list(itertools.product(arguments.lights.split(","), bounces))
     if arguments.output:
         output.target_of(arguments.output)  # found before the work
-    rows = measure(shapes, columns, arguments.offsets, options)
+    rows = measure(shapes, columns, arguments.offsets, known.keywords_of(" ".join(others)))
     if arguments.output:
         output.write(arguments.output, json_lines({"leaks": rows}))
     print(tables.drawn(lines(rows)), end="")

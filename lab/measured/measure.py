@@ -16,23 +16,19 @@ earlier run. Files hold no samples and no host name. `clpv quality` caches groun
 the docs finished cells, so a second run of it is short. The second form needs Debian's Python and
 its packages.
 """
-import argparse
 import datetime
 import functools
 import itertools
 import json
-import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
 
-from . import (CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rooms, rows,
-               run_clpv)
+from . import (CLPV, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, parser_of,
+               rooms, rows, run_clpv, use_device)
 
 FRAME_COUNT = 9
-NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
 IMAGES = ROOT / "docs/images"
 
 
@@ -58,12 +54,11 @@ def run(*arguments, program=CLPV, right=False):
 
 
 def write(folder, name, document):
-    """`folder`: of results/, or an output.Folder."""
-    named = folder.file if isinstance(folder, output.Folder) else folder.joinpath
-    output.write(named(f"{name}.json"), json_lines(document))
+    output.write(folder / f"{name}.json", json_lines(document))
 
 
 def measure_device(folder):
+    output.Folder(folder, "scripts/measure")
     write(folder, "check", json.loads(run_clpv("check", "--format=json", check=False)))
     for suite, options in rows.DEVICE_SUITES.items():
         write(folder, suite, run("bench", suite, *options.split(), "--output"))
@@ -111,13 +106,13 @@ def sponza_of(model):
 
 
 def measure_frames(model):
-    rows_of = []
+    frames = []
     for varied in rows.table("FRAMES").values():
         stats = run("render", "scenes/sponza_suns.json", *sponza_of(model),
                     *(f"--{name}={value}" for name, value in ({"bounces": 1} | varied).items()),
                     f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
-        rows_of.append({"given": varied, "times": stats["times"]})
-    return {"frames": rows_of}
+        frames.append({"given": varied, "times": stats["times"]})
+    return {"frames": frames}
 
 
 def measure_suite(name, model, options, right=False):
@@ -169,14 +164,11 @@ def measure_docs(model, parts):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("name", metavar="NAME",
                         help="folder in results/; docs: all that the docs' tables show")
-    parser.add_argument("device", metavar="DEVICE", nargs="?",
+    parser.add_argument("device", metavar="DEVICE", nargs="?", type=use_device,
                         help="as --device of clpv takes it (default: the first)")
-    parser.add_argument("--model",
-                        help="Sponza's glTF, of the Khronos sample models; for docs")
     parser.add_argument("--part", metavar="NAME", action="append",
                         help="of docs: a file of results/docs, repeatable (default: all)")
     arguments = parser.parse_intermixed_args()
@@ -185,14 +177,9 @@ def main():
             parser.error(f"--part {part}: allowed for docs: {', '.join(PARTS)}")
     if (arguments.name == "docs") != (arguments.model is not None):
         parser.error("--model: needed for docs, and for these alone")
-    if arguments.device:
-        os.environ["CLPV_DEVICE"] = arguments.device
-    if not re.fullmatch(NAME, arguments.name):
-        parser.error(f"NAME {arguments.name}: allowed: letters, digits, '.', '_' and '-'")
-    folder = RESULTS / arguments.name
     if arguments.name == "docs":
-        measure_docs(pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
+        measure_docs(arguments.model, arguments.part or PARTS)
         print("results/docs is written; scripts/tables and lab/scripts/tables write the tables")
     else:
-        measure_device(output.Folder(folder, "scripts/measure"))
+        measure_device(RESULTS / arguments.name)
         print(f"results/{arguments.name} is written; results/README.md says how to send it")

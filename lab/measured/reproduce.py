@@ -14,7 +14,6 @@ has the minutes of each part.
 Exit code 5: numbers left the tolerances of results/paper/expected.json; they are listed. Times are
 not compared. Needs the packages of scripts/setup.
 """
-import argparse
 import base64
 import json
 import os
@@ -24,7 +23,7 @@ import sys
 import time
 
 from . import (BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, model_files, output,
-               run_clpv, tables, verdicts)
+               parser_of, run_clpv, tables, verdicts)
 from .expected import CLAIMS, PARTS
 from .measure import measure_suite, measured_with, write
 
@@ -38,7 +37,10 @@ def result_of(name, arguments):
     if name == "table1":
         repetitions = 2 if arguments.quick else 7
         return measure_suite(name, arguments.model, f"sponza --repetitions={repetitions}", True)
-    return figures.paper(arguments) if name == "figures" else getattr(claims, name)(arguments)
+    if name == "figures":
+        return figures.paper(arguments)
+    made = getattr(claims, name)(arguments)
+    return made if isinstance(made, dict) else list(made)
 
 
 def parts_of(arguments):
@@ -57,7 +59,7 @@ def key_of(arguments):
                    if name.startswith(("CLPV_", "POCL_", "OCL_"))}
     return {
         "sources": hash_of(sources),
-        "model": hash_of(model_files(pathlib.Path(arguments.model))) if arguments.model else None,
+        "model": hash_of(model_files(arguments.model)) if arguments.model else None,
         "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
         "devices": run_clpv("devices", "--format=json"),
         "environment": environment,
@@ -66,19 +68,14 @@ def key_of(arguments):
 
 
 def earlier(out, name, key):
-    """The part of an earlier run with this key; None if there is none, or if it lacks one of its
-    files. Reports a damaged one."""
+    """The part of an earlier run with this key; None if there is none, if it is damaged, or if it
+    lacks one of its files."""
     try:
         found = json.loads((out.path / name).read_bytes())
         whole = all((out.path / file).is_file() for file in found["files"])
-        if found["key"] == key and whole:
-            return {**found, "result": found["result"], "minutes": float(found["minutes"])}
-    except FileNotFoundError:
+        return found if found["key"] == key and whole else None
+    except (OSError, ValueError, KeyError, TypeError):
         return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        print(f"scripts/reproduce: {out.path / name}: damaged ({type(error).__name__}: {error}): "
-              "measured again", file=sys.stderr)
-    return None
 
 
 def measured(arguments):
@@ -179,9 +176,7 @@ def page(arguments, done, left, checked, unmeasured):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
+    parser = parser_of(__doc__)
     parser.add_argument("--quick", action="store_true", help="fewer rows and samples")
     parser.add_argument("--part", action="append", metavar="NAME",
                         help="only this part, repeatable")
@@ -191,8 +186,7 @@ def main():
                         help="write results/docs and docs/images; whole runs only")
     parser.add_argument("--no-build", action="store_true", help="use the build as it is")
     arguments = parser.parse_args()
-    arguments.model = str(pathlib.Path(arguments.model).resolve()) if arguments.model else None
-    if arguments.model and not pathlib.Path(arguments.model).is_file():
+    if arguments.model and not arguments.model.is_file():
         parser.error(f"--model {arguments.model}: found no file; allowed: Sponza's glTF")
     arguments.width, arguments.height = (480, 270) if arguments.quick else (960, 540)
     allowed = parts_of(arguments)

@@ -36,6 +36,11 @@ def options_of(text):
     return options
 
 
+def keywords_of(text):
+    """The same as arguments of clpv.Renderer."""
+    return {name.replace("-", "_"): value for name, value in options_of(text).items()}
+
+
 def table(name):
     """{title: options}."""
     return {title: options_of(text) for title, text in DATA[name].items()}

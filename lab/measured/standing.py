@@ -12,16 +12,14 @@ lab/docs/other_methods.md; --picture only the one of images; --own renews the er
 the published scheme at 240x135 in each file there. lab/scripts/tables then writes the tables of
 lab/docs/results.md. DEVICE: as --device of clpv takes it; default: the first. Commit and build
 first (scripts/build), and keep the machine free of other work."""
-import argparse
 import json
-import os
 import pathlib
 import re
 import tempfile
 
 import numpy
 
-from . import LAB, ROOT, charts
+from . import LAB, ROOT, charts, parser_of, use_device
 from .cells import found
 from .charts import clpv
 from .measure import FRAME_COUNT, measured_with, run, scenes_of, write
@@ -31,13 +29,11 @@ from .sheets import sheet
 FOLDER = ROOT / "lab/results/quality"
 STANDING_COUNT = 5
 # Scenes and their cameras by run, then what each run measures.
-STANDING = [[
-    "sponza_suns", "cornell", "atrium", "--camera=curtains", "--camera=atrium", "--camera=columns",
-    "--camera=front", "--camera=nave", "--camera=gallery"
-], ["atrium_living", "--time=4"]]
-STANDING_LARGE = [[
-    "sponza_suns", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"
-]]
+STANDING = [["sponza_suns", "cornell", "atrium", "--camera=curtains", "--camera=atrium",
+             "--camera=columns", "--camera=front", "--camera=nave", "--camera=gallery"],
+            ["atrium_living", "--time=4"]]
+STANDING_LARGE = [["sponza_suns", "cornell", "atrium", "--camera=curtains", "--camera=front",
+                   "--camera=nave"]]
 STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
 METHODS = list(DATA["METHODS"])[3:]  # other methods
 BASELINES = ["--preset=best", f"--baseline={','.join(METHODS)}"]
@@ -46,10 +42,8 @@ SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--
 ERRORS = "nrmse", "nrmse_best_gain", "best_gain", "energy_ratio", "flip"
 # Error against time, for the chart: clpv by grid, other methods by their time [ms].
 FRONT = [*VIEWS, "--noise=0.03"]
-FRONT_GRIDS = {
-    "clpv": ["--vary=grid=16,24,32,48,64"],
-    "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]
-}
+GRIDS = "--vary=grid=16,24,32,48,64"
+FRONT_GRIDS = {"clpv": [GRIDS], "clpv, near off": ["--near=off", GRIDS]}
 FRONT_TIMES = 5, 20, 80
 # The picture: views that clpv wins and loses, and methods beside clpv.
 SHOWN_VIEWS = "curtains", "columns"
@@ -62,9 +56,8 @@ def method_of(cell, options):
     measures."""
     if options[0] == "--preset=paper":
         return "published scheme"
-    near = cell["options"].get("near")
-    return {"traced": "clpv", "off": "clpv, near off"
-            }[near] if near else cell["options"].get("baseline")
+    named = {"traced": "clpv", "off": "clpv, near off"}
+    return named.get(cell["options"].get("near"), cell["options"].get("baseline"))
 
 
 def quality(scenes, model, *options):
@@ -84,10 +77,9 @@ def measure_standing(folder, model):
                                      [OF_A_TIME + [f"--baseline-time={time:.1f}"]]),
         "large": (STANDING_LARGE, "large", STANDING_FRAMES + [BASELINES])
     }
-    document = {
-        "measured": measured_with(stats["device"]), "frames": STANDING_COUNT,
-        "time_of_large_ms": time, "ground_truths": []
-    }
+    measured = measured_with(stats["device"])
+    document = {"measured": measured, "frames": STANDING_COUNT, "time_of_large_ms": time,
+                "ground_truths": []}
     for name, (scenes, size, runs) in groups.items():
         document[name] = []
         for arguments in scenes:
@@ -98,12 +90,11 @@ def measure_standing(folder, model):
                     cell["method"] = method_of(cell, options)
                     cell["scene"] = cell["scene"].removesuffix("_suns")
                 document[name] += [cell for cell in report["cells"] if cell["method"]]
-            document["ground_truths"] += [
-                {**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
-                for truth in report["ground_truths"] if name != "small_with_time_of_large"
-            ]
+            if name != "small_with_time_of_large":
+                document["ground_truths"] += [
+                    {**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
+                    for truth in report["ground_truths"]]
     document["variants"] = measure_front(model)
-    measured = document["measured"]
     slug = re.sub("[^a-z0-9.]+", "-",
                   f"{measured['device']} {measured['driver']} {measured['commit']}".lower())
     write(folder, slug, document)
@@ -188,19 +179,14 @@ def draw_methods(model):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("device", metavar="DEVICE", nargs="?")
-    parser.add_argument("--model", type=pathlib.Path, required=True,
-                        help="Sponza's glTF, of the Khronos sample models")
+    parser = parser_of(__doc__, required=True)
+    parser.add_argument("device", metavar="DEVICE", nargs="?", type=use_device)
     parser.add_argument("--picture", action="store_true", help="the picture of images alone")
     parser.add_argument("--own", action="store_true", help="errors of clpv's own frames alone")
     arguments = parser.parse_args()
-    if arguments.device:
-        os.environ["CLPV_DEVICE"] = arguments.device
     if arguments.picture or arguments.own:
-        (draw_methods if arguments.picture else renew_own)(arguments.model.resolve())
+        (draw_methods if arguments.picture else renew_own)(arguments.model)
         return 0
-    measure_standing(FOLDER, arguments.model.resolve())
+    measure_standing(FOLDER, arguments.model)
     print("lab/results/quality is written; lab/scripts/tables writes lab/docs/results.md")
     return 0

@@ -10,7 +10,6 @@ DIR: a new or empty folder, or one that lab/scripts/suite wrote.
 The views are those of the standing benchmark and Sponza under three other suns. Needs a built clpv
 and oiiotool; traces the ground truths that `clpv quality` has not cached, a minute of processor
 time each. Sponza's model is not included. """
-import argparse
 import hashlib
 import io
 import json
@@ -19,7 +18,7 @@ import subprocess
 import tarfile
 import tempfile
 
-from . import ROOT, model_files, native, output
+from . import ROOT, model_files, native, output, parser_of
 from .measure import run
 
 clpv = native()
@@ -60,11 +59,11 @@ def lights_of(scene, camera):
     return [camera["light"]] if "light" in camera else [light["name"] for light in scene["lights"]]
 
 
-def ground_truths(name, cameras, model, cache):
+def ground_truths(name, cameras, model):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
     return run("quality", f"scenes/{FILES.get(name, name)}.json",
                *(f"--camera={camera}" for camera in cameras),
-               *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
+               *([f"--model={model}"] if model else []),
                f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
                f"--noise={NOISE}", "--preset=fast", "--frames=1", "--output")["ground_truths"]
 
@@ -74,15 +73,12 @@ def in_halves(source):
     channels = ",".join(f"{layer}.{channel}" for layer in LAYERS for channel in "RGBA")
     with tempfile.TemporaryDirectory() as folder:
         target = pathlib.Path(folder) / source.name
-        subprocess.run([
-            "oiiotool",
-            str(source), "--ch", channels, "-d", "half", "--compression", "zip", "-o",
-            str(target)
-        ], check=True)
+        subprocess.run(["oiiotool", source, "--ch", channels, "-d", "half", "--compression", "zip",
+                        "-o", target], check=True)
         return target.read_bytes()
 
 
-def add_scene(folder, name, sponza, cache):
+def add_scene(folder, name, sponza):
     """Writes a scene's files into an output.Folder. Returns its entry and those of its views."""
     scene = json.loads((ROOT / f"scenes/{FILES.get(name, name)}.json").read_text())
     scene.update(DATA["at_their_time"].get(name, {}))
@@ -91,14 +87,12 @@ def add_scene(folder, name, sponza, cache):
     if ours:
         for file in model_files(model):
             folder.write(f"models/{file.name}", file.read_bytes())
-    cameras = {
-        camera["name"]: camera
-        for camera in scene["cameras"] if not SCENES[name] or camera["name"] in SCENES[name]
-    }
+    cameras = {camera["name"]: camera for camera in scene["cameras"]
+               if not SCENES[name] or camera["name"] in SCENES[name]}
     gltf = views_gltf({**scene, "cameras": list(cameras.values())}, model)
     folder.write(f"cameras/{name}.gltf", json.dumps(gltf, indent=1) + "\n")
     views = []
-    for traced in ground_truths(name, cameras, None if ours else sponza, cache):
+    for traced in ground_truths(name, cameras, None if ours else sponza):
         source = pathlib.Path(traced["file"])
         truth = in_halves(source)
         folder.write(f"truths/{source.name}", truth)
@@ -106,16 +100,13 @@ def add_scene(folder, name, sponza, cache):
             "name": f"{name}-{traced['camera']}", "scene": name, "camera": traced["camera"],
             "lights": lights_of(scene, cameras[traced["camera"]]), "truth": f"truths/{source.name}",
             "sha256": hashlib.sha256(truth).hexdigest(), "noise": traced["noise"],
-            "paths": traced["spp"], "exposure": scene.get("exposure",
-                                                          0), "width": SIZE[0], "height": SIZE[1]
-        })
+            "paths": traced["spp"], "exposure": scene.get("exposure", 0),
+            "width": SIZE[0], "height": SIZE[1]})
     hashes = {file.name: hashlib.sha256(file.read_bytes()).hexdigest()
               for file in model_files(model)}
-    return {
-        "model": f"models/{model.name}" if ours else model.name, "included": ours, "sha256": hashes,
-        "metres_per_unit": scene.get("metres_per_unit", 1), "time": TIMES.get(name, 0),
-        "cameras": f"cameras/{name}.gltf"
-    }, views
+    return {"model": f"models/{model.name}" if ours else model.name, "included": ours,
+            "sha256": hashes, "metres_per_unit": scene.get("metres_per_unit", 1),
+            "time": TIMES.get(name, 0), "cameras": f"cameras/{name}.gltf"}, views
 
 
 def packed_files(folder):
@@ -130,18 +121,16 @@ def packed_files(folder):
     return packed.getvalue()
 
 
-def write_suite(folder, tar, sponza, cache, names):
+def write_suite(folder, tar, sponza, names):
     """`folder`: output.Folder; `tar`: a file."""
     scenes, views = {}, []
     for name in names:
-        scenes[name], found = add_scene(folder, name, sponza, cache)
+        scenes[name], found = add_scene(folder, name, sponza)
         views += found
     whole = hashlib.sha256("".join(view["name"] + view["sha256"]
                                    for view in views).encode()).hexdigest()[:16]
-    document = {
-        "schema": SCHEMA, "hash": whole, "units": DATA["units"], "conventions": DATA["conventions"],
-        "scenes": scenes, "views": views
-    }
+    document = {"schema": SCHEMA, "hash": whole, "units": DATA["units"],
+                "conventions": DATA["conventions"], "scenes": scenes, "views": views}
     folder.write("suite.json", json.dumps(document, indent=1) + "\n")
     for root, *patterns in SCORER:
         for file in (file for pattern in patterns for file in sorted((ROOT / root).glob(pattern))):
@@ -156,16 +145,11 @@ def write_suite(folder, tar, sponza, cache, names):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__)
     parser.add_argument("--output", metavar="DIR", type=pathlib.Path, required=True,
                         help="folder of the suite; DIR.tar beside it")
-    parser.add_argument("--model", type=pathlib.Path,
-                        help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--scene", metavar="NAME", action="append", choices=SCENES,
                         help="some scenes, repeatable (default: all)")
-    parser.add_argument("--cache", metavar="DIR", type=pathlib.Path,
-                        help="ground truths, as --cache of clpv quality")
     arguments = parser.parse_args()
     names = arguments.scene or list(SCENES)
     if any(name.startswith("sponza") for name in names) and not arguments.model:
@@ -175,6 +159,5 @@ def main():
     if packed.exists() and not (place / output.MARKER).exists():
         parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
     output.target_of(packed)
-    model, cache = (path and path.resolve() for path in (arguments.model, arguments.cache))
-    write_suite(output.Folder(place, "lab/scripts/suite"), packed, model, cache, names)
+    write_suite(output.Folder(place, "lab/scripts/suite"), packed, arguments.model, names)
     return 0

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS."""
+"""Reads OpenEXR images: scanlines, uncompressed, ZIP or ZIPS. Arrays need NumPy; scripts/demo reads
+without it."""
+import itertools
 import struct
 import zlib
-
-import numpy
 
 MAGIC, VERSION, LONG_NAMES = 20000630, 2, 0x400
 NOT_SCANLINES = 0x1a00  # in the version: tiled, deep, several parts
@@ -11,7 +11,7 @@ KINDS = {"channels": "chlist", "compression": "compression", "dataWindow": "box2
          "displayWindow": "box2i", "lineOrder": "lineOrder", "chromaticities": "chromaticities",
          "envmap": "envmap"}  # types of attributes that are read
 CUBE_MAP, LINE_ORDERS = b"\1", (b"\0", b"\1")
-TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
+TYPES = {0: "<u4", 1: "<f2", 2: "<f4"}  # with their bytes
 ROWS = {0: 1, 2: 1, 3: 16}  # rows of a chunk, by compression: none, ZIPS, ZIP
 REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
 SAME_CHROMATICITY = 1e-3  # standards state three or four digits
@@ -59,22 +59,20 @@ def unzipped(data, size):
     """Inverts ZIP compression: bytes are differences, those at even places first."""
     if len(data) == size:
         return data  # data that do not shrink are stored as they are
-    data = zlib.decompressobj().decompress(data, size + 1)
-    deltas = numpy.frombuffer(data, numpy.uint8).astype(numpy.uint64)
-    deltas[1:] += 128  # differences are stored with an offset of 128
-    values = numpy.cumsum(deltas).astype(numpy.uint8)
+    values = bytearray(zlib.decompressobj().decompress(data, size + 1))
+    values[:] = itertools.accumulate(values, lambda value, step: value + step - 128 & 255)
     half = (len(values) + 1) // 2
-    result = numpy.empty_like(values)
-    result[0::2], result[1::2] = values[:half], values[half:]
-    return result.tobytes()
+    values[0::2], values[1::2] = values[:half], values[half:]
+    return values
 
 
 def scanlines(data, attributes, at):
+    """Width, height, and {channel: (type, bytes)}."""
     left, top, right, bottom = window(attributes["dataWindow"])
     width, height = right - left + 1, bottom - top + 1
     channels = channel_list(attributes["channels"])
-    bytes_of_row = width * sum(kind.itemsize for _, kind in channels)
-    planes = {name: numpy.empty((height, width), numpy.float32) for name, _ in channels}
+    bytes_of_row = width * sum(int(kind[-1]) for _, kind in channels)
+    planes = {name: (kind, bytearray()) for name, kind in channels}
     compression = attributes["compression"][0]
     rows = ROWS[compression]
     if attributes["lineOrder"] not in LINE_ORDERS:
@@ -89,20 +87,20 @@ def scanlines(data, attributes, at):
             raise ValueError(f"rows from {y}, {len(chunk)} bytes, in place of rows from "
                              f"{top + first}, {count * bytes_of_row} bytes")
         place = 0
-        for row in range(first, first + count):
-            for name, kind in channels:
-                planes[name][row] = numpy.frombuffer(chunk, kind, width, place)
-                place += width * kind.itemsize
-    return planes
+        for name, kind in channels * count:
+            end = place + width * int(kind[-1])
+            planes[name][1].extend(chunk[place:end])
+            place = end
+    return width, height, planes
 
 
 def window(value):
     return struct.unpack("<4i", value)
 
 
-def read(file):
-    """Returns the channels {name: float32 array of height x width}, R, G and B those of Rec. 709.
-    Throws BadImage."""
+def raw(file):
+    """Width, height, and the channels {name: (type, bytes)}, R, G and B those of Rec. 709. Throws
+    BadImage."""
     if file.exists() and not file.is_file():
         raise BadImage(f"{file}: found no regular file; allowed: an EXR file")
     try:
@@ -126,7 +124,7 @@ def read(file):
                            "allowed: those of the displayWindow")
         if "chromaticities" in attributes:
             found = struct.unpack("<8f", attributes["chromaticities"])
-            if not numpy.allclose(found, REC709, rtol=0, atol=SAME_CHROMATICITY):
+            if not all(abs(a - b) <= SAME_CHROMATICITY for a, b in zip(found, REC709)):
                 raise BadImage(f"{file}: found chromaticities {found}; allowed: Rec. 709")
         return scanlines(data, attributes, at)
     except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError, RuntimeError,
@@ -134,9 +132,18 @@ def read(file):
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
 
 
+def read(file):
+    """Returns the channels {name: float32 array of height x width}. Throws BadImage."""
+    import numpy
+    width, height, planes = raw(file)
+    return {name: numpy.frombuffer(data, kind).reshape(height, width).astype("f4")
+            for name, (kind, data) in planes.items()}
+
+
 def colours(planes, file, layer=""):
     """Returns R, G and B of a layer (height x width x 3) and its alpha, 1 where there is none.
     Throws BadImage for values that are not finite."""
+    import numpy
     prefix = f"{layer}." if layer else ""
     if any(prefix + name not in planes for name in "RGB"):
         raise BadImage(
