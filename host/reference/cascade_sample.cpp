@@ -121,11 +121,6 @@ unsigned cells_from(const ClearPoint& point, const glm::ivec3& cube) {
   return cells;
 }
 
-/// The cells of `cube` of which a sample point must see one to count.
-unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& cube) {
-  return point && point->seen != 0 ? cells_from(*point, cube) : kAllPoints;
-}
-
 TrilinearSample visible_sample(const glm::dvec3& at, const ClearWay& clear, double cell, int n,
                                const std::uint8_t* occluded, const Volume& light) {
   TrilinearSample sample = trilinear_sample(at, n);
@@ -138,8 +133,8 @@ TrilinearSample visible_sample(const glm::dvec3& at, const ClearWay& clear, doub
     next = sample_point(next_place(*place, clear.eye), n, occluded);
     if (point->seen == 0) point = next;
   }
-  const std::array<double, 8> visible =
-      visible_shares(t, occluded + number, clear_cells(point, cube));
+  const std::array<double, 8> visible = visible_shares(
+      t, occluded + number, point && point->seen != 0 ? cells_from(*point, cube) : kAllPoints);
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner)
     total += visible[corner] * sample.weight[corner];

@@ -35,8 +35,6 @@ namespace {
 
 using namespace bake;
 using namespace test;
-using std::numbers::pi;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(Bake, InvalidProbesAreFilledFromTheirNeighbours) {
@@ -235,7 +233,7 @@ TEST(Bake, SweptProbesHaveTheLightOfTheVolumes) {
                          swept_light(session, scene, scene.camera(""), tiny, grid, {format},
                                      tracer);
                        }),
-              AllOf(HasSubstr("frames of cascades of 0.01 m"), HasSubstr("4096")));
+              testing::AllOf(HasSubstr("frames of cascades of 0.01 m"), HasSubstr("4096")));
 }
 
 struct BakeCommand : ::testing::Test {
@@ -278,8 +276,8 @@ TEST_F(BakeCommand, FilesShowTheTruth) {
     const auto& [position, n] = points.points[i];
     const glm::dvec3 truth = points.truth[i];
     const glm::dvec3 found[] = {
-        pi * bevy_light(bevy, vector_of(cube["bevy"]["translation"]),
-                        vector_of(cube["bevy"]["scale"]), position, n),
+        std::numbers::pi * bevy_light(bevy, vector_of(cube["bevy"]["translation"]),
+                                      vector_of(cube["bevy"]["scale"]), position, n),
         three_light(three, vector_of(atlas["bounds"][0]), vector_of(atlas["bounds"][1]),
                     position - 0.5 * grid.spacing() * n, n)};
     for (int k = 0; k < 2; ++k) squares[k] += glm::dot(found[k] - truth, found[k] - truth);

@@ -26,7 +26,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 TEST(Session, RejectsABufferTheDeviceCannotHoldWithItsLimit) {
   Device device = choose_device();
@@ -104,8 +103,9 @@ TEST(Kernel, MissingArgumentsAreReported) {
   Kernel kernel(session, {"sizes.cl"}, "sizes");
   EXPECT_EQ(session.programs().build_ms(), 0) << "described, not built";
   kernel.set(bytes).launch(1, 1);
-  EXPECT_THAT([&] { kernel.set().launch(1, 1); },
-              ThrowsMessage<Error>(HasSubstr("kernel 'sizes' was given 0 of its 1 arguments")));
+  EXPECT_THAT(
+      [&] { kernel.set().launch(1, 1); },
+      testing::ThrowsMessage<Error>(HasSubstr("kernel 'sizes' was given 0 of its 1 arguments")));
 }
 
 TEST(Kernel, ADescribedProgramIsBuiltOnce) {
@@ -312,8 +312,6 @@ TEST(ClError, NamesCodeCallAndAdvice) {
 
 // `clpv devices` names drivers that cannot be loaded, and lists the others.
 
-using ::testing::Not;
-
 struct DriverFiles : ::testing::Test {
   /// An .icd file with the library of that name in the folder, or elsewhere.
   void add(const std::string& icd, const std::string& library) {
@@ -369,7 +367,7 @@ TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
               AllOf(HasSubstr("Portable Computing Language"), HasSubstr("aborts.icd: "),
                     HasSubstr("signal 6"), HasSubstr("exits.icd: "),
                     HasSubstr("with exit code 0 when loaded"),
-                    HasSubstr("pipe.icd: names no library"), Not(HasSubstr("pocl.icd"))));
+                    HasSubstr("pipe.icd: names no library"), testing::Not(HasSubstr("pocl.icd"))));
   EXPECT_THAT(devices("--format json").out,
               AllOf(HasSubstr("\"faulty_drivers\": [\n"), HasSubstr("aborts.icd")));
 }

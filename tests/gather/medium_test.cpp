@@ -28,7 +28,6 @@ namespace clpv::medium_test {
 namespace {
 
 using std::numbers::pi;
-using ::testing::HasSubstr;
 using namespace test;
 
 ClpvMedium medium_of(const glm::vec3& scattering, const glm::vec3& absorption, float anisotropy,
@@ -105,7 +104,7 @@ TEST(Medium, SceneFilesHaveOneInABoxOrInTheirBounds) {
        "/medium/box: found 0,0,0 to 1,0,1; allowed: an upper corner above the lower one"},
       {R"({"absorption": [1, 1, 1], "colour": [1, 1, 1]})", "colour"}};
   for (const auto& [medium, message] : bad)
-    EXPECT_THAT(error_of(ExitCode::bad_input, [&] { loaded(medium); }), HasSubstr(message))
+    EXPECT_THAT(error_of(ExitCode::bad_input, [&] { loaded(medium); }), testing::HasSubstr(message))
         << medium;
 }
 

@@ -126,7 +126,6 @@ namespace clpv::image_kinds_test {
 
 namespace {
 
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -362,8 +361,8 @@ TEST(Primaries, ColoursOfAnExrAreThoseOfRec709) {
   EXPECT_NEAR(at("R"), 1.6605 - 0.25 * (0.5876 + 0.0728), 1e-3);
   EXPECT_NEAR(at("G"), -0.1246 + 0.25 * (1.1329 - 0.0083), 1e-3);
   EXPECT_EQ(at("Z"), 0.25f);
-  EXPECT_THAT(image.notes, ElementsAre(AllOf(HasSubstr("chromaticities 0.708,0.292"),
-                                             HasSubstr("converted to Rec. 709"))));
+  EXPECT_THAT(image.notes, ElementsAre(testing::AllOf(HasSubstr("chromaticities 0.708,0.292"),
+                                                      HasSubstr("converted to Rec. 709"))));
   wide.chromaticities = {0, 0, 0, 0, 0, 0, 0, 0};
   EXPECT_THAT(rejection({wide}), HasSubstr("allowed: three colours and a white"));
 }

@@ -29,7 +29,6 @@ namespace clpv::random_options_test {
 namespace {
 
 using namespace test;
-using ::testing::HasSubstr;
 
 /// A sequence of choices, from a random generator.
 class Choices {

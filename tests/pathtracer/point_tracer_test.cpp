@@ -35,9 +35,7 @@ namespace {
 using namespace test;
 using pathtracer::PointLight;
 using pathtracer::PointTracer;
-using pathtracer::TracedPoints;
 using std::numbers::pi;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 PathTracerOptions paths(std::uint32_t samples, int bounces = 1) {
@@ -119,7 +117,7 @@ TEST(PointTracer, EqualsTheImageAtItsPixels) {
   }
   ASSERT_GT(points.size(), 60u);
   PointTracer tracer(scene, scene.lights_for(camera), paths(1024));
-  const TracedPoints traced = tracer.irradiance(points);
+  const pathtracer::TracedPoints traced = tracer.irradiance(points);
   EXPECT_LT(traced.noise, 0.05);
   double squares = 0, all = 0;
   int shadows = 0;
@@ -161,8 +159,8 @@ TEST(PathtracePoints, OfTheLibraryAreThoseOfTheCommand) {
   };
   const Outcome outcome = query("--truth --spp 64 --basis sh3");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out,
-              AllOf(HasSubstr(",error_blue,c0_red,"), HasSubstr(",c8_blue\n0.28,0.27,0.1,0,0,1,")));
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr(",error_blue,c0_red,"),
+                                          HasSubstr(",c8_blue\n0.28,0.27,0.1,0,0,1,")));
   const std::array<float, 3> positions[] = {{0.28f, 0.27f, 0.1f}, {0.28f, 0.5f, 0.3f}},
                              normals[] = {{0, 0, 2}, {0, -1, 0}};
   TraceOptions options;

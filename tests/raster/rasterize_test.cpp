@@ -23,7 +23,6 @@ namespace {
 
 using test::add_material;
 using test::add_quad;
-using test::add_vertex;
 using test::camera_at;
 using test::directional_light;
 using test::drawn;
@@ -106,7 +105,7 @@ SceneData jittered_plane(int cells, float extent, float depth, float step) {
       const glm::vec3 p(-extent + edge * static_cast<float>(i) + jitter(),
                         -extent + edge * static_cast<float>(j) + jitter(),
                         -depth + 0.3f * uniform(random));
-      add_vertex(scene, p, {0, 0, 1});
+      test::add_vertex(scene, p, {0, 0, 1});
     }
   }
   const auto row = static_cast<unsigned>(cells + 1);

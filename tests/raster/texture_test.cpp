@@ -14,9 +14,6 @@
 namespace clpv::texture_test {
 namespace {
 
-using test::add_material;
-using test::add_quad;
-
 Texture texture(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) {
   Texture made;
   made.width = width;
@@ -63,7 +60,7 @@ TEST(MipChain, EverySrgbByteComesBack) {
 /// An orthographic camera looking down -z at the square (0..1)^2 at z = -1, whose uv runs from
 /// `from` to `to`.
 SurfaceImage image_of(SceneData scene, int size, const glm::vec2& from, const glm::vec2& to) {
-  add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 0);
+  test::add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 0);
   for (Vertex& v : scene.vertices) {
     for (int i = 0; i < 2; ++i) v.uv[i] = from[i] + v.uv[i] * (to[i] - from[i]);
   }
@@ -77,7 +74,7 @@ SurfaceImage image_of(SceneData scene, int size, const glm::vec2& from, const gl
 /// A scene with a textured white material and no triangles yet.
 SceneData textured(Texture used, unsigned flags = 0) {
   SceneData scene;
-  add_material(scene, glm::vec3(1), flags);
+  test::add_material(scene, glm::vec3(1), flags);
   scene.materials[0].texture = 0;
   scene.materials[0].alpha_cutoff = 0.5f;
   scene.textures.push_back(std::move(used));

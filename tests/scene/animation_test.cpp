@@ -124,10 +124,6 @@ TEST_F(AnimationTest, UnsupportedAnimationsGetANote) {
 
 // Curves through keys against their closed forms.
 
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
-using ::testing::Pointwise;
-
 constexpr double kExact = 1e-14;  // a few roundings of numbers near 1
 constexpr double kPi = glm::pi<double>();
 
@@ -174,7 +170,7 @@ TEST(Curve, RotationsTurnEvenlyAboutTheirAxis) {
   for (const double share : {0.0, 0.25, 0.5, 0.9}) {
     const glm::dquat q = rotation_at(curve, 2 * share);
     EXPECT_THAT((std::vector{q.x, q.y, q.z, q.w}),
-                Pointwise(DoubleNear(kExact), turn(axis, 0.2 + 1.2 * share)))
+                testing::Pointwise(testing::DoubleNear(kExact), turn(axis, 0.2 + 1.2 * share)))
         << share;
   }
 }

@@ -21,7 +21,6 @@ namespace clpv::test::scene_test {
 namespace {
 
 using ::testing::AllOf;
-using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -145,8 +144,8 @@ TEST_F(SceneTest, AllKeysOfASceneFileInMetres) {
 TEST_F(SceneTest, ASceneTooSmallForLampsIsNoted) {
   std::string small = kFull;
   small.replace(small.find("0.5,"), 4, "1e-6,");
-  EXPECT_THAT(load(small).notes,
-              Contains(AllOf(HasSubstr("1e-06 m wide"), HasSubstr("metres_per_unit 1e-06"))));
+  EXPECT_THAT(load(small).notes, testing::Contains(AllOf(HasSubstr("1e-06 m wide"),
+                                                         HasSubstr("metres_per_unit 1e-06"))));
 }
 
 TEST_F(SceneTest, TheModelsCamerasAndLightsAreTheDefault) {

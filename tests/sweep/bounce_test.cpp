@@ -26,7 +26,6 @@ namespace clpv::bounce_test {
 namespace {
 
 using namespace test;
-using reference::SweptCascade;
 
 constexpr double kExact = 1e-12;
 
@@ -110,7 +109,7 @@ struct Room {
 
   /// All light inside.
   double lit(Bounces bounces, int parts = 1) const {
-    const SweptCascade cascade{grid, &light, &blockers, parts};
+    const reference::SweptCascade cascade{grid, &light, &blockers, parts};
     const auto bins = make_basis("bins24");
     const reference::Volume normalised = reference::normalised_reflectors(
         *bins, swept(), {cascade}, {&white}, {&reflectors}, bounces)[0];

@@ -24,8 +24,6 @@ namespace {
 
 using namespace test;
 using reference::SweptCascade;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 constexpr double kExact = 1e-12;
 constexpr double kFloat = 2e-6;  // relative: some dozen roundings of float32
@@ -392,7 +390,7 @@ TEST(Sweep, RejectsGridsThatAreNotNested) {
 TEST(Sweep, RejectsVolumesThatKernelsCannotAddress) {
   const SweepVolumes volumes(test_session(), 512, {Layout::soa, Storage::float16});
   EXPECT_THAT([&] { volumes.make(3 * kSweepBins, "light to sweep"); },
-              ThrowsMessage<Error>(HasSubstr("light to sweep of 9")));
+              testing::ThrowsMessage<Error>(testing::HasSubstr("light to sweep of 9")));
 }
 
 TEST(Sweep, IsNoMatterOfSteps) {

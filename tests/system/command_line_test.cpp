@@ -192,7 +192,6 @@ TEST(HostileSurroundings, Variables) {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 test::Outcome clpv(const std::string& arguments) {
   return test::run(CLPV_PROGRAM " " + arguments);
@@ -251,7 +250,7 @@ TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
 TEST(CommandLine, StartsWithoutImageCodecs) {
   const test::Outcome libraries = test::run("LD_TRACE_LOADED_OBJECTS=1 " CLPV_PROGRAM);
   EXPECT_THAT(libraries.out, HasSubstr("libOpenCL"));
-  EXPECT_THAT(libraries.out, Not(HasSubstr("libOpenImageIO")));
+  EXPECT_THAT(libraries.out, testing::Not(HasSubstr("libOpenImageIO")));
 }
 
 }  // namespace

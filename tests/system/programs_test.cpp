@@ -20,9 +20,7 @@ namespace fs = std::filesystem;
 using test::kSmallSteps;
 using test::kTiny;
 using test::read_file;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// A folder with a trap of every name that Python or a program search could take from it. Each
 /// writes a file "sprung".
@@ -65,7 +63,7 @@ TEST(Programs, NothingOfTheCurrentFolderRuns) {
     const bool no_ffmpeg = outcome.err.find("--video needs ffmpeg") != std::string::npos;
     EXPECT_EQ(outcome.exit_code, no_ffmpeg ? 1 : 0) << command << "\n" << outcome.err;
     EXPECT_EQ(traps.sprung(), "") << command;
-    EXPECT_THAT(outcome.err, Not(HasSubstr("labelsize")));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("labelsize")));
   }
   EXPECT_TRUE(fs::exists(traps.folder() / "page/index.html"));
 }
@@ -91,9 +89,9 @@ TEST(Programs, APythonThatLacksModulesIsPassedOver) {
   const test::Outcome named =
       test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + report);
   EXPECT_EQ(named.exit_code, 1);
-  EXPECT_THAT(named.err,
-              AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
-                    HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
+  EXPECT_THAT(named.err, testing::AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
+                                        HasSubstr((folder / "bin/python3").string() +
+                                                  ": No module named numpy")));
 }
 
 // Python and daemons may ignore SIGCHLD. The first frame then waited without end, and an ffmpeg

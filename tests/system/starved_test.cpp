@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::string kFrame = " render " + test::kTiny + kSmallSteps;
 
@@ -60,7 +59,7 @@ struct Starved : ::testing::Test {
                                 program() + kFrame + "-o " + image.string());
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(name));
-    EXPECT_THAT(outcome.err, Not(HasSubstr("terminate")));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("terminate")));
     EXPECT_FALSE(fs::exists(image));
     EXPECT_EQ(report()["live"], 0) << "memory objects left";
   }

@@ -35,9 +35,7 @@ using test::mode_of;
 using test::must_run_here;
 using test::read_file;
 using test::run_here;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 // ---------------------------------------------------------------------------------------------------
 // caches
@@ -191,7 +189,8 @@ TEST(DriverCache, IsAFolderThatNobodyElseCanWrite) {
   EXPECT_EQ(err, "");
   const fs::path scratch = chosen_cache("", "", err);
   EXPECT_EQ(mode_of(scratch), 0700u);
-  EXPECT_THAT(err, AllOf(HasSubstr("absolute path"), HasSubstr("compiles its kernels again")));
+  EXPECT_THAT(err,
+              testing::AllOf(HasSubstr("absolute path"), HasSubstr("compiles its kernels again")));
   EXPECT_EQ(chosen_cache("relative", "relative", err), scratch);
   ::chmod((folder / "clpv/pocl").c_str(), 0777);
   EXPECT_EQ(chosen_cache("", folder.path(), err), scratch);
@@ -258,7 +257,7 @@ TEST_F(Inputs, AreNoneWhereOutputsOfEarlierRunsAreReplaced) {
     for (const std::string& command : {"render" + scene + "-o o.exr --stats s.json",
                                        "sequence" + scene + "--frames 2 --fps 1 -o film"}) {
       const test::Outcome outcome = must_run_here(command, folder.path());
-      EXPECT_THAT(outcome.err, Not(HasSubstr("existed"))) << outcome.err;
+      EXPECT_THAT(outcome.err, testing::Not(HasSubstr("existed"))) << outcome.err;
     }
   }
   EXPECT_EQ(run_here("compare o.exr o.exr -o o.exr", folder.path()).exit_code, 2);

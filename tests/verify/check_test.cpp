@@ -76,7 +76,6 @@ TEST(LongCheck, KernelsAgreeInTheOtherNumberOfLanes) {
 
 // Comparison of results with the CPU reference, and its JUnit report.
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(Comparison, ReportsTheLargestErrorAndItsPlace) {
@@ -138,7 +137,7 @@ TEST(Junit, ListsStagesCasesAndFailures) {
                                 "A & B");
   EXPECT_THAT(
       xml,
-      AllOf(
+      testing::AllOf(
           HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"5\" failures=\"2\" "
                     "errors=\"1\" skipped=\"1\">"),
           HasSubstr(
