@@ -13,10 +13,8 @@ ROOM = 1.13  # extent of a plot over its largest value; axes extend beyond the s
 COLUMNS = 5
 SHEET = {"size": (2.0, 2.0), "dpi": 120, "below": 2, "projection": "3d",
          "draw": lambda axis, plotted: sphere.plot(axis, **plotted)}
-MAIN_AXES = {
-    "+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "+z": (0, 0, 1),
-    "-z": (0, 0, -1)
-}
+MAIN_AXES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0),
+             "+z": (0, 0, 1), "-z": (0, 0, -1)}
 SLANTED = {"+z": (0, 0, 1), "(-2, 1, -3)": (-2, 1, -3)}
 TABLE_SIZES = {"exact": None, "rotate": 256}  # of lobes, as clpv.Basis.clamped_cosine() takes them
 METHODS = {"exact": "each projected exactly",

@@ -92,10 +92,8 @@ def check(clock, options, stages):
 
 
 # Markdown: a row a frame, before and after; "-" for what failed.
-TABLE = {
-    "columns": {"frame": "{frame}", "program": "{program}", "frame [ms]": "{ms:.2f}",
-                "host [ms]": "{host:.2f}", **{name: f"{{{name}:.0f}}" for name in COUNTS}}
-}
+COLUMNS = {"frame": "{frame}", "program": "{program}", "frame [ms]": "{ms:.2f}",
+           "host [ms]": "{host:.2f}", **{name: f"{{{name}:.0f}}" for name in COUNTS}}
 MS = {"ms": "ms_of(times, 'frame') or None", "host": "ms_of(times, 'host') or None"}
 
 
@@ -147,7 +145,7 @@ def main():
         report = measure(options, pathlib.Path(folder))
     output.write(options.output, json_lines(report))
     rows = {"each": report["frames"], "let": MS}
-    print(tables.drawn(cells.table({**TABLE, "rows": rows})), end="")
+    print(tables.drawn(cells.table({"columns": COLUMNS, "rows": rows})), end="")
     bad = [row for row in report["frames"] if "failed" in row or "differ" in row["hash"]]
     bad += report["check"].get("bad", []) + report["check first"].get("bad", [])
     for row in bad:

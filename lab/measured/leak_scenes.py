@@ -159,10 +159,8 @@ def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
         triangles = [[i, i + j, i + j + 1] for i in range(0, len(corners), 4) for j in (1, 2)]
         clpv.Scene.from_arrays(corners, triangles, material=look).save(file(name + ".glb"))
         for light, values in LIGHTS.items():
-            scene = {
-                "model": name + ".glb", **values, "cameras": [{
-                    "name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
-                    "vertical_fov_degrees": 90
-                }], "cascades": {"count": 3, "size_metres": 12.5}
-            }
+            inside = {"name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
+                      "vertical_fov_degrees": 90}
+            scene = {"model": name + ".glb", **values, "cameras": [inside],
+                     "cascades": {"count": 3, "size_metres": 12.5}}
             output.write(file(f"{name}-{light}.json"), json.dumps(scene, indent=1) + "\n")

@@ -25,9 +25,7 @@ POINTS = 5  # along each edge of a face
 SIZE = 240, 135  # size of the images of direct light
 NOISE = 0.05  # noise of path tracing
 # Irradiance of open ground: by the sun, by the even sky, and 3.5 m below the lamp.
-GROUND = {
-    "sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2
-}
+GROUND = {"sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2}
 
 
 def offsets(count):
