@@ -48,16 +48,11 @@ def box(low, high, inwards, without=()):
             for axis, side in sides]
 
 
-def with_slit(faces):
-    """Replaces each face at x = -2 by two, half a cell apart."""
-    result = []
-    for face in faces:
-        if any(p[0] != -2 for p in face):
-            result.append(face)
-            continue
-        for low, high in ((0, 1.5 - CELL / 4), (1.5 + CELL / 4, 3)):
-            result.append([(x, min(max(y, low), high), z) for x, y, z in face])
-    return result
+def with_slit():
+    """The face at x = -2 is two, half a cell apart."""
+    return box(LOWER, UPPER, True, [(0, 0)]) + [
+        rectangle(0, -2, (-2, low, -2), (-2, high, 2), 1)
+        for low, high in ((0, 1.5 - CELL / 4), (1.5 + CELL / 4, 3))]
 
 
 def turned(points, degrees):
@@ -114,7 +109,7 @@ def walls(thickness, room=(LOWER, UPPER), windows=()):
 def shapes():
     yield from ((name, walls(cells * CELL)) for name, cells in WALLS.items())
     yield "turned", [turned(face, TURN) for face in walls(0)]
-    yield "slit", with_slit(walls(0))
+    yield "slit", with_slit()
     yield "door", two_rooms()
     yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])
     yield "legs", legs()

@@ -17,7 +17,7 @@ import pathlib
 import re
 import sys
 
-from . import ROOT, RESULTS, bake as probes, expected, json_lines, output, verdicts
+from . import ROOT, RESULTS, bake as probes, expected, json_lines, output, parser_of, verdicts
 from .cells import LOADED, MEASURED, load, read, rows, table
 
 __all__ = ["MEASURED", "TABLES", "main", "read"]
@@ -182,23 +182,20 @@ def files():
 
 
 def main():
-    arguments = sys.argv[1:]
-    if arguments in (["-h"], ["--help"]):
-        print(__doc__.strip())
-        return 0
-    if arguments == ["--list"]:
+    parser = parser_of(__doc__, model=False)
+    parser.add_argument("--check", action="store_true", help="changes nothing")
+    parser.add_argument("--list", action="store_true", help="names of all tables")
+    arguments = parser.parse_args()
+    if arguments.list:
         print("\n".join(["measured-on", *TABLES]))
         return 0
-    if arguments not in ([], ["--check"]):
-        print(__doc__.strip(), file=sys.stderr)
-        return 2
     differing = []
     for file, text in files():
         if not file.exists() or file.read_text(encoding="utf-8") != text:
             differing.append(str(file.relative_to(ROOT)))
-            if not arguments:
+            if not arguments.check:
                 output.write(file, text)
-    if arguments and differing:
+    if arguments.check and differing:
         print(f"{', '.join(differing)}: tables differ from results; run {sys.argv[0]}",
               file=sys.stderr)
         return 1
