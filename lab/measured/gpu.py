@@ -21,14 +21,10 @@ import time
 
 from . import CLPV, ROOT, cells, described, json_lines, output, parser_of, tables, use_device
 
-FRAMES = {
-    "defaults": ["--width", "960", "--height", "540"],
-    "1080p": ["--width", "1920", "--height", "1080"],
-    "fine": ["--width", "960", "--height", "540", "--preset", "fine"],
-    "paper": ["--width", "960", "--height", "540", "--preset", "paper"],
-    "one bounce": ["--width", "960", "--height", "540", "--bounces", "1"],
-}
-QUICK = ["--width", "48", "--height", "27"]
+FRAMES = {"defaults": [], "1080p": [], "fine": ["--preset", "fine"], "paper": ["--preset", "paper"],
+          "one bounce": ["--bounces", "1"]}
+SIZES = {"1080p": (1920, 1080)}  # of frames that are not 960x540
+QUICK = 48, 27
 COUNTS = "launches", "fills", "waits", "arguments"
 LEAST = 5  # [s] for a step
 
@@ -110,10 +106,11 @@ def measure(options, folder):
     # Frames first: they are what a GPU is lent for. Each of both programs in turn.
     frames = []
     for name, chosen in FRAMES.items():
-        size = QUICK + chosen[4:] if options.quick else chosen
+        width, height = QUICK if options.quick else SIZES.get(name, (960, 540))
+        size = ["--width", str(width), "--height", str(height)]
         for program, path in programs.items():
             frames.append({"frame": name, "program": program,
-                           **frame(clock, path, scene, size, folder)})
+                           **frame(clock, path, scene, size + chosen, folder)})
     few = ["--repetitions", "2"] if options.quick else []
     text, why = clock.run(["devices", "--format", "json"])
     report = {

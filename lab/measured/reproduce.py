@@ -57,14 +57,10 @@ def key_of(arguments):
     kernels = os.environ.get("CLPV_KERNEL_DIR")
     environment = {name: value for name, value in sorted(os.environ.items())
                    if name.startswith(("CLPV_", "POCL_", "OCL_"))}
-    return {
-        "sources": hash_of(sources),
-        "model": hash_of(model_files(arguments.model)) if arguments.model else None,
-        "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
-        "devices": run_clpv("devices", "--format=json"),
-        "environment": environment,
-        "quick": arguments.quick,
-    }
+    return {"sources": hash_of(sources), "environment": environment, "quick": arguments.quick,
+            "model": hash_of(model_files(arguments.model)) if arguments.model else None,
+            "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
+            "devices": run_clpv("devices", "--format=json")}
 
 
 def earlier(out, name, key):

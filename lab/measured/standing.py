@@ -117,9 +117,8 @@ def renew_own(model):
                 row = found(document["small"], scene=cell["scene"].removesuffix("_suns"),
                             camera=cell["camera"], method=method_of(cell, options))
                 row.update({name: cell[name] for name in ERRORS})
-        document["measured"]["except"] = (
-            "errors of clpv and the published scheme at 240x135, of "
-            f"{measured['commit']} on {measured['device']}")
+        document["measured"]["except"] = ("errors of clpv and the published scheme at 240x135, of "
+                                          f"{measured['commit']} on {measured['device']}")
         write(FOLDER, path.stem, document)
 
 
