@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Measures a GPU that is there for a few minutes, in one command (docs/gpu.md).
 
-    scripts/gpu -o FILE.json [--device NAME] [--clpv PROGRAM] [--before PROGRAM] [--model PATH/Sponza.gltf]
-                [--first STAGE,...] [--minutes 9] [--quick]
-
 Devices; frames of the defaults, 1920x1080, `fine`, `paper`, one bounce and a camera that only
 moves, also of an older program; hashes of the images of two runs; `clpv check`,
 thorough, stages of --first first. A step that the time left does not hold is cut off or left out,
-and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
---model, else the atrium. --quick: small frames and the short check, for tests.
+and the file says so. Prints a table of the frames. Scene: Sponza's `curtains` with --model, else
+the atrium.
 """
 import collections
 import hashlib
@@ -129,13 +126,14 @@ def measure(options, folder):
 
 def main():
     parser = parser_of(__doc__)
-    parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
+    parser.add_argument("-o", "--output", metavar="FILE.json", required=True, type=pathlib.Path)
     parser.add_argument("--device", type=use_device, help="as of clpv --device")
     parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
     parser.add_argument("--before", type=pathlib.Path, help="an older program")
-    parser.add_argument("--first", default="", help="stages to check first")
+    parser.add_argument("--first", default="", metavar="STAGE,...", help="to check first")
     parser.add_argument("--minutes", type=float, default=9)
-    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--quick", action="store_true",
+                        help="small frames and the short check, for tests")
     options = parser.parse_args()
     output.target_of(options.output)  # found before the work
     with tempfile.TemporaryDirectory() as folder:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Measures how much light leaks into the rooms of leak_scenes.py.
 
-    scripts/leaks [--shapes sheet,wall1] [--lights sun,sky,lamp] [--bounces 1,all] [--offsets 8]
-                  [-o FILE.json] [--OPTION=VALUE...]
+    scripts/leaks --shapes sheet,wall1 --lights sun,sky,lamp --bounces 1,all [--OPTION=VALUE...]
 
 Prints a Markdown table. Leak: mean indirect irradiance of the room's walls, floor and ceiling, in %
 of the irradiance of the open ground; the worst of positions of the room between the cells. Open

@@ -2,11 +2,7 @@
 """Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->,
 from results/docs and lab/results.
 
-    scripts/tables            rewrites them in README.md, docs/ and lab/, and claims.json and
-                              expected.json in results/paper
-    scripts/tables --check    changes nothing; fails if one of them differs from the results
-    scripts/tables --list     names of all tables
-
+Rewrites them in README.md, docs/ and lab/, and claims.json and expected.json in results/paper.
 scripts/measure writes results/docs. tables.json has the tables, written as cells.py says, but for
 verdicts and light probes at equal bytes, which are functions here. Only the
 standard library.
@@ -183,8 +179,9 @@ def files():
 
 def main():
     parser = parser_of(__doc__, model=False)
-    parser.add_argument("--check", action="store_true", help="changes nothing")
-    parser.add_argument("--list", action="store_true", help="names of all tables")
+    parser.add_argument("--check", action="store_true",
+                        help="change nothing; fail if one of them differs from the results")
+    parser.add_argument("--list", action="store_true", help="print the names of all tables")
     arguments = parser.parse_args()
     if arguments.list:
         print("\n".join(["measured-on", *TABLES]))
