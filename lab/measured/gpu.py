@@ -23,6 +23,7 @@ FRAMES = {"defaults": [], "1080p": [], "fine": ["--preset", "fine"], "paper": ["
 SIZES = {"1080p": (1920, 1080)}  # of frames that are not 960x540
 QUICK = 48, 27
 COUNTS = "launches", "fills", "waits", "arguments"
+KEYS = *COUNTS, "written_bytes", "host_ms", "device", "times", "kernels"
 LEAST = 5  # [s] for a step
 
 
@@ -59,8 +60,7 @@ def frame(clock, program, scene, options, folder):
         found = json.loads(stats.read_text())
         if row and found["times"][0]["median"] > row["times"][0]["median"]:
             continue
-        row = {key: found.get(key) for key in (*COUNTS, "written_bytes", "host_ms", "device")}
-        row["times"], row["kernels"] = found["times"], found["kernels"]
+        row = {key: found.get(key) for key in KEYS}
     return {**row, "hash": hashes.pop() if len(hashes) == 1 else "two runs differ"}
 
 

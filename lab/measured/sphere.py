@@ -27,8 +27,7 @@ def directions(shape):
 
 
 def joint(functions, colours):
-    """Returns the maximum of several functions as one surface, and the colour of the largest at
-    each point."""
+    """The maximum of several functions, and the colour of the largest at each point."""
     return functions.max(axis=0), numpy.asarray(colours)[functions.argmax(axis=0)]
 
 
