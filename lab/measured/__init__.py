@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import urllib.parse
@@ -58,14 +59,11 @@ def use_device(name):
 def described():
     """Commit of this tree, as cmake/git_describe.cmake finds it: `unknown` without git, and in a
     source archive, which may lie in another repository."""
-    if (ROOT / ".git").exists():
-        try:
-            return subprocess.run(["git", "describe", "--always", "--dirty", "--tags"],
-                                  capture_output=True, text=True, check=True,
-                                  cwd=ROOT).stdout.strip()
-        except (OSError, subprocess.CalledProcessError):
-            pass
-    return "unknown"
+    if not (ROOT / ".git").exists() or not shutil.which("git"):
+        return "unknown"
+    found = subprocess.run(["git", "describe", "--always", "--dirty", "--tags"],
+                           capture_output=True, text=True, check=False, cwd=ROOT)
+    return found.stdout.strip() or "unknown"
 
 
 def hash_of(paths):

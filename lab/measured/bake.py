@@ -2,6 +2,7 @@
 """Errors of light probes by format, for results/docs: `bake` by `clpv bake --check`, `bake-leaks`
 by `clpv bake --points`."""
 import csv
+import itertools
 import math
 import pathlib
 import sys
@@ -11,10 +12,8 @@ from . import cells, leak_scenes as scenes, run_clpv
 
 POINTS = 1000
 PATHS = "--spp=512"
-BOXES = {
-    "cornell": "0.02,0.02,0.02,0.53,0.52,0.53", "atrium": "-13.5,0.3,-6.5,13.5,9,6.5",
-    "sponza": "-16,0.3,-9,15,12,8"
-}
+BOXES = {"cornell": "0.02,0.02,0.02,0.53,0.52,0.53", "atrium": "-13.5,0.3,-6.5,13.5,9,6.5",
+         "sponza": "-16,0.3,-9,15,12,8"}
 SPACINGS = {"cornell": (0.1, 0.05), "atrium": (2, 1), "sponza": (2, 1)}  # [m] coarse and fine
 # Scenes, with the camera whose sun lights them.
 SCENES = ("cornell", "cornell_lamp", "atrium", "atrium_overcast", "sponza_suns:curtains",
@@ -53,10 +52,9 @@ def measure_scene(scene, box, spacing, source, model):
     options = [f"--bounds={box}", f"--spacing={spacing}", f"--from={source}", f"--check={POINTS}",
                PATHS, *([f"--camera={camera}"] if camera else []),
                *([f"--model={model}"] if kind_of(scene) == "sponza" else [])]
-    return [{
-        "scene": scene, "spacing": spacing, "source": source, "format": name,
-        "numbers": int(numbers), "bytes": int(size), **values(words, COLUMNS)
-    } for name, numbers, size, *words in printed(f"scenes/{file}.json", *options)]
+    return [{"scene": scene, "spacing": spacing, "source": source, "format": name,
+             "numbers": int(numbers), "bytes": int(size), **values(words, COLUMNS)}
+            for name, numbers, size, *words in printed(f"scenes/{file}.json", *options)]
 
 
 def measure(model):
@@ -109,12 +107,8 @@ def leaks_of(folder, room, spacing, fill):
 
 
 def measure_leaks():
-    rows = []
     with tempfile.TemporaryDirectory() as folder:
-        for room in ROOMS:
-            for spacing in ROOM_SPACINGS:
-                for fill in (True, False):
-                    leaks = leaks_of(pathlib.Path(folder), room, spacing, fill)
-                    rows += [{"room": room, "spacing": spacing, "filled": fill, "format": name,
-                              "leak": round(leak, 3)} for name, leak in leaks.items()]
-    return rows
+        return [{"room": room, "spacing": spacing, "filled": fill, "format": name,
+                 "leak": round(leak, 3)}
+                for room, spacing, fill in itertools.product(ROOMS, ROOM_SPACINGS, (True, False))
+                for name, leak in leaks_of(pathlib.Path(folder), room, spacing, fill).items()]

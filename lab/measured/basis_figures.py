@@ -8,22 +8,20 @@ from .sheets import sheet
 clpv = native()
 BASES = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDA_ALONE = 0.4  # of Figure 2's single kernel
-GRID = sphere.directions((121, 240))  # 1.5 degrees: finer details appear smooth
+GRID = sphere.directions((46, 91))  # 4 degrees: facets appear smooth
 ROOM = 1.13  # extent of a plot over its largest value; axes extend beyond the surface
 COLUMNS = 5
-SHEET = {"size": (2.0, 2.0), "dpi": 120, "below": 2,
+SHEET = {"size": (2.0, 2.0), "dpi": 120, "below": 2, "projection": "3d",
          "draw": lambda axis, plotted: sphere.plot(axis, **plotted)}
-MAIN_AXES = {
-    "+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "+z": (0, 0, 1),
-    "-z": (0, 0, -1)
-}
+MAIN_AXES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0),
+             "+z": (0, 0, 1), "-z": (0, 0, -1)}
 SLANTED = {"+z": (0, 0, 1), "(-2, 1, -3)": (-2, 1, -3)}
 TABLE_SIZES = {"exact": None, "rotate": 256}  # of lobes, as clpv.Basis.clamped_cosine() takes them
 METHODS = {"exact": "each projected exactly",
            "rotate": "SRBF: projected along +z, then rotated, as in the paper"}
-# Linear colours; neighbours differ strongly.
-PALETTE = [(0.80, 0.08, 0.06), (0.06, 0.30, 0.70), (0.90, 0.45, 0.02), (0.05, 0.45, 0.20),
-           (0.55, 0.10, 0.45), (0.04, 0.50, 0.55), (0.75, 0.62, 0.05), (0.30, 0.14, 0.06)]
+# Neighbours differ strongly.
+PALETTE = [(0.91, 0.31, 0.27), (0.27, 0.58, 0.85), (0.95, 0.70, 0.15), (0.25, 0.70, 0.48),
+           (0.76, 0.35, 0.70), (0.22, 0.74, 0.76), (0.88, 0.81, 0.28), (0.58, 0.41, 0.27)]
 
 
 def figure2(path):
@@ -47,7 +45,7 @@ def figure2(path):
 
 
 def cosine(name, axis):
-    return {"values": numpy.maximum(0, GRID @ sphere.unit(numpy.array(axis, float)))}, \
+    return {"values": numpy.maximum(0, GRID @ sphere.unit(axis))}, \
         f"max(0, cos), {name}"
 
 
@@ -55,7 +53,7 @@ def lobe(basis, kind, name, axis):
     coefficients = basis.clamped_cosine(axis, TABLE_SIZES[kind])
     errors = basis.lobe(axis, coefficients)
     return ({"values": basis.evaluate(GRID) @ coefficients,
-             "outline": (sphere.unit(numpy.array(axis, float)) / 2, 0.5)},
+             "outline": (sphere.unit(axis) / 2, 0.5)},
             f"{basis.name}, {name}\nerror {errors['relative_l2']:.3f}, min {errors['minimum']:.2f}")
 
 

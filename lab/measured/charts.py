@@ -42,7 +42,6 @@ CASCADE = 25  # edge of the finest cascade [m], in scenes/atrium.json
 def save(figure, target, dpi):
     figure.tight_layout()
     output.write(target, style.rendered(figure, "png", dpi=dpi))
-    print(target)
 
 
 def draw_errors(series, target):

@@ -83,16 +83,15 @@ def picture(pictures):
 
 def print_stages(stats):
     """Stage times of `clpv render --stats`, summed over cascades and lights."""
-    rows = [[stage, ms_of(stats["times"], stage)]
+    rows = [[stage, f"{ms_of(stats['times'], stage):.2f}"]
             for stage in dict.fromkeys(time["stage"] for time in stats["times"])]
     rows.sort(key=lambda row: row[0] in ("frame", "host"))
-    started = [[key.removesuffix("_ms").replace("_", " "), stats[key]]
+    started = [[key.removesuffix("_ms").replace("_", " "), f"{stats[key]:.2f}"]
                for key in ("first_launch_ms", "build_ms", "startup_ms")]
     width = max(len(name) for name, _ in rows + started)
-    rule = "-" * width + "  " + "-" * 8
-    print(f"{'stage [ms]':{width}}  {stats['options']['basis']:>8}", rule, sep="\n")
-    for name, milliseconds in rows + [[rule, None]] + started:
-        print(name if milliseconds is None else f"{name:{width}}  {milliseconds:8.2f}")
+    head, rule = ["stage [ms]", stats["options"]["basis"]], ["-" * width, "-" * 8]
+    for name, value in [head, rule, *rows, rule, *started]:
+        print(f"{name:{width}}  {value:>8}")
     device = stats["device"]
     print(f"on {device['name']} ({device['platform']}, driver {device['driver']})")
 

@@ -1,17 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The paper's Figures 1 to 6 by clpv, for scripts/reproduce: contact sheets with captions, and
-numbers.
-
-figure1, figure4   Sponza, camera `curtains`, by `--preset paper` and by the defaults with the
-                   paper's two bases
-figure2, 3, 6      by basis_figures.py, with both kinds of lobes
-figure5            the arcade and the wall behind it, sun along the nave, as figure1
-answer             indirect light of both bases by either preset, beside path tracing
-srbf14             srbf14 with rotated lobes and sampled transport, and with exact ones; camera
-                   `atrium`
+numbers. figures.json has the sheets of frames; basis_figures.py draws Figures 2, 3 and 6.
 
 These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md
-describes them. """
+describes them."""
 import functools
 import itertools
 import json

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Measures a GPU that is there for a few minutes, in one command (docs/gpu.md).
 
-    scripts/gpu -o FILE.json [--device NAME] [--clpv PROGRAM] [--before PROGRAM] [--model PATH/Sponza.gltf]
-                [--first STAGE,...] [--minutes 9] [--quick]
-
 Devices; frames of the defaults, 1920x1080, `fine`, `paper`, one bounce and a camera that only
 moves, also of an older program; hashes of the images of two runs; `clpv check`,
 thorough, stages of --first first. A step that the time left does not hold is cut off or left out,
-and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
---model, else the atrium. --quick: small frames and the short check, for tests.
+and the file says so. Prints a table of the frames. Scene: Sponza's `curtains` with --model, else
+the atrium.
 """
 import collections
 import hashlib
@@ -21,15 +18,12 @@ import time
 
 from . import CLPV, ROOT, cells, described, json_lines, output, parser_of, tables, use_device
 
-FRAMES = {
-    "defaults": ["--width", "960", "--height", "540"],
-    "1080p": ["--width", "1920", "--height", "1080"],
-    "fine": ["--width", "960", "--height", "540", "--preset", "fine"],
-    "paper": ["--width", "960", "--height", "540", "--preset", "paper"],
-    "one bounce": ["--width", "960", "--height", "540", "--bounces", "1"],
-}
-QUICK = ["--width", "48", "--height", "27"]
+FRAMES = {"defaults": [], "1080p": [], "fine": ["--preset", "fine"], "paper": ["--preset", "paper"],
+          "one bounce": ["--bounces", "1"]}
+SIZES = {"1080p": (1920, 1080)}  # of frames that are not 960x540
+QUICK = 48, 27
 COUNTS = "launches", "fills", "waits", "arguments"
+KEYS = *COUNTS, "written_bytes", "host_ms", "device", "times", "kernels"
 LEAST = 5  # [s] for a step
 
 
@@ -66,8 +60,7 @@ def frame(clock, program, scene, options, folder):
         found = json.loads(stats.read_text())
         if row and found["times"][0]["median"] > row["times"][0]["median"]:
             continue
-        row = {key: found.get(key) for key in (*COUNTS, "written_bytes", "host_ms", "device")}
-        row["times"], row["kernels"] = found["times"], found["kernels"]
+        row = {key: found.get(key) for key in KEYS}
     return {**row, "hash": hashes.pop() if len(hashes) == 1 else "two runs differ"}
 
 
@@ -92,10 +85,8 @@ def check(clock, options, stages):
 
 
 # Markdown: a row a frame, before and after; "-" for what failed.
-TABLE = {
-    "columns": {"frame": "{frame}", "program": "{program}", "frame [ms]": "{ms:.2f}",
-                "host [ms]": "{host:.2f}", **{name: f"{{{name}:.0f}}" for name in COUNTS}}
-}
+COLUMNS = {"frame": "{frame}", "program": "{program}", "frame [ms]": "{ms:.2f}",
+           "host [ms]": "{host:.2f}", **{name: f"{{{name}:.0f}}" for name in COUNTS}}
 MS = {"ms": "ms_of(times, 'frame') or None", "host": "ms_of(times, 'host') or None"}
 
 
@@ -112,10 +103,11 @@ def measure(options, folder):
     # Frames first: they are what a GPU is lent for. Each of both programs in turn.
     frames = []
     for name, chosen in FRAMES.items():
-        size = QUICK + chosen[4:] if options.quick else chosen
+        width, height = QUICK if options.quick else SIZES.get(name, (960, 540))
+        size = ["--width", str(width), "--height", str(height)]
         for program, path in programs.items():
             frames.append({"frame": name, "program": program,
-                           **frame(clock, path, scene, size, folder)})
+                           **frame(clock, path, scene, size + chosen, folder)})
     few = ["--repetitions", "2"] if options.quick else []
     text, why = clock.run(["devices", "--format", "json"])
     report = {
@@ -134,20 +126,21 @@ def measure(options, folder):
 
 def main():
     parser = parser_of(__doc__)
-    parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
+    parser.add_argument("-o", "--output", metavar="FILE.json", required=True, type=pathlib.Path)
     parser.add_argument("--device", type=use_device, help="as of clpv --device")
     parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
     parser.add_argument("--before", type=pathlib.Path, help="an older program")
-    parser.add_argument("--first", default="", help="stages to check first")
+    parser.add_argument("--first", default="", metavar="STAGE,...", help="to check first")
     parser.add_argument("--minutes", type=float, default=9)
-    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--quick", action="store_true",
+                        help="small frames and the short check, for tests")
     options = parser.parse_args()
     output.target_of(options.output)  # found before the work
     with tempfile.TemporaryDirectory() as folder:
         report = measure(options, pathlib.Path(folder))
     output.write(options.output, json_lines(report))
     rows = {"each": report["frames"], "let": MS}
-    print(tables.drawn(cells.table({**TABLE, "rows": rows})), end="")
+    print(tables.drawn(cells.table({"columns": COLUMNS, "rows": rows})), end="")
     bad = [row for row in report["frames"] if "failed" in row or "differ" in row["hash"]]
     bad += report["check"].get("bad", []) + report["check first"].get("bad", [])
     for row in bad:

@@ -48,16 +48,11 @@ def box(low, high, inwards, without=()):
             for axis, side in sides]
 
 
-def with_slit(faces):
-    """Replaces each face at x = -2 by two, half a cell apart."""
-    result = []
-    for face in faces:
-        if any(p[0] != -2 for p in face):
-            result.append(face)
-            continue
-        for low, high in ((0, 1.5 - CELL / 4), (1.5 + CELL / 4, 3)):
-            result.append([(x, min(max(y, low), high), z) for x, y, z in face])
-    return result
+def with_slit():
+    """The face at x = -2 is two, half a cell apart."""
+    return box(LOWER, UPPER, True, [(0, 0)]) + [
+        rectangle(0, -2, (-2, low, -2), (-2, high, 2), 1)
+        for low, high in ((0, 1.5 - CELL / 4), (1.5 + CELL / 4, 3))]
 
 
 def turned(points, degrees):
@@ -114,7 +109,7 @@ def walls(thickness, room=(LOWER, UPPER), windows=()):
 def shapes():
     yield from ((name, walls(cells * CELL)) for name, cells in WALLS.items())
     yield "turned", [turned(face, TURN) for face in walls(0)]
-    yield "slit", with_slit(walls(0))
+    yield "slit", with_slit()
     yield "door", two_rooms()
     yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])
     yield "legs", legs()
@@ -159,10 +154,8 @@ def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
         triangles = [[i, i + j, i + j + 1] for i in range(0, len(corners), 4) for j in (1, 2)]
         clpv.Scene.from_arrays(corners, triangles, material=look).save(file(name + ".glb"))
         for light, values in LIGHTS.items():
-            scene = {
-                "model": name + ".glb", **values, "cameras": [{
-                    "name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
-                    "vertical_fov_degrees": 90
-                }], "cascades": {"count": 3, "size_metres": 12.5}
-            }
+            inside = {"name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
+                      "vertical_fov_degrees": 90}
+            scene = {"model": name + ".glb", **values, "cameras": [inside],
+                     "cascades": {"count": 3, "size_metres": 12.5}}
             output.write(file(f"{name}-{light}.json"), json.dumps(scene, indent=1) + "\n")

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Measures how much light leaks into the rooms of leak_scenes.py.
 
-    scripts/leaks [--shapes sheet,wall1] [--lights sun,sky,lamp] [--bounces 1,all] [--offsets 8]
-                  [-o FILE.json] [--OPTION=VALUE...]
+    scripts/leaks --shapes sheet,wall1 --lights sun,sky,lamp --bounces 1,all [--OPTION=VALUE...]
 
 Prints a Markdown table. Leak: mean indirect irradiance of the room's walls, floor and ceiling, in %
 of the irradiance of the open ground; the worst of positions of the room between the cells. Open
@@ -25,9 +24,7 @@ POINTS = 5  # along each edge of a face
 SIZE = 240, 135  # size of the images of direct light
 NOISE = 0.05  # noise of path tracing
 # Irradiance of open ground: by the sun, by the even sky, and 3.5 m below the lamp.
-GROUND = {
-    "sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2
-}
+GROUND = {"sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2}
 
 
 def offsets(count):

@@ -6,11 +6,10 @@
     scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: up to two hours on
                                                                two cores
 
-NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes
-it; default: the first. The first form runs `clpv check` and four suites of `clpv bench`. The second
-runs more suites, frames with --stats, and `clpv quality` against path tracing, and redraws the
-charts in docs/images; scripts/tables and lab/scripts/tables then write the tables.
-The paper's numbers are those of scripts/reproduce --record. Commit and build first (scripts/build),
+NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. The first form runs `clpv check`
+and four suites of `clpv bench`. The second runs more suites, frames with --stats, and `clpv
+quality` against path tracing, and redraws the charts in docs/images; scripts/tables then writes the
+tables. The paper's numbers are those of scripts/reproduce --record. Commit and build first (scripts/build),
 and keep the machine free of other work. results/NAME of the first form is new, empty, or of an
 earlier run. Files hold no samples and no host name. `clpv quality` caches ground truths, and for
 the docs finished cells, so a second run of it is short. The second form needs Debian's Python and

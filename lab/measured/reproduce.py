@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Reproduces the paper's figures, Table 1 and claims; compares numbers with expected.json.
 
-    scripts/reproduce [--model PATH/Sponza.gltf] [--quick] [--part NAME...] [--out DIR] [--record]
-
 Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
-DIR (out/paper), a new or empty folder or one of an earlier run. A second run with the same program,
+its output folder, a new or empty folder or one of an earlier run. A second run with the same program,
 scripts, model and device continues: it measures the parts that it lacks.
 Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, large RSMs
 and srbf14's frames, and times each row two or three times. --record puts the numbers into
@@ -57,14 +55,10 @@ def key_of(arguments):
     kernels = os.environ.get("CLPV_KERNEL_DIR")
     environment = {name: value for name, value in sorted(os.environ.items())
                    if name.startswith(("CLPV_", "POCL_", "OCL_"))}
-    return {
-        "sources": hash_of(sources),
-        "model": hash_of(model_files(arguments.model)) if arguments.model else None,
-        "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
-        "devices": run_clpv("devices", "--format=json"),
-        "environment": environment,
-        "quick": arguments.quick,
-    }
+    return {"sources": hash_of(sources), "environment": environment, "quick": arguments.quick,
+            "model": hash_of(model_files(arguments.model)) if arguments.model else None,
+            "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
+            "devices": run_clpv("devices", "--format=json")}
 
 
 def earlier(out, name, key):

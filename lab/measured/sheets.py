@@ -9,7 +9,7 @@ FONT, LINE = 8.5, 8.5 * 1.45 / 72  # of captions: points, and inches from line t
 
 
 def sheet(path, title, columns, size, tiles, dpi=100, below=0, draw=style.pyplot.Axes.imshow,
-          **options):
+          projection=None, **options):
     """Draws tiles (drawn, caption), row by row, under a title. PNG or JPEG, by the suffix.
 
     size: width and height of a tile [inches]; below: number of lines of a caption below its tile,
@@ -27,7 +27,7 @@ def sheet(path, title, columns, size, tiles, dpi=100, below=0, draw=style.pyplot
         left = gap + i % columns * (size[0] + gap)
         top = heading + i // columns * (size[1] + caption) + (0 if below else caption)
         axis = figure.add_axes((left / width, 1 - (top + size[1]) / height, size[0] / width,
-                                size[1] / height))
+                                size[1] / height), projection=projection)
         axis.axis("off")
         axis.annotate(text, (0.5, y), xycoords="axes fraction", xytext=(0, offset),
                       textcoords="offset points", ha="center", va=anchor, fontsize=FONT,

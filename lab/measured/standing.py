@@ -10,8 +10,8 @@ tracing.
 Writes a file of lab/results/quality, named after device and commit, and the pictures of
 lab/docs/other_methods.md; --picture only the one of images; --own renews the errors of clpv and of
 the published scheme at 240x135 in each file there. lab/scripts/tables then writes the tables of
-lab/docs/results.md. DEVICE: as --device of clpv takes it; default: the first. Commit and build
-first (scripts/build), and keep the machine free of other work."""
+lab/docs/results.md. Commit and build first (scripts/build), and keep the machine free of other
+work."""
 import json
 import pathlib
 import re
@@ -117,9 +117,8 @@ def renew_own(model):
                 row = found(document["small"], scene=cell["scene"].removesuffix("_suns"),
                             camera=cell["camera"], method=method_of(cell, options))
                 row.update({name: cell[name] for name in ERRORS})
-        document["measured"]["except"] = (
-            "errors of clpv and the published scheme at 240x135, of "
-            f"{measured['commit']} on {measured['device']}")
+        document["measured"]["except"] = ("errors of clpv and the published scheme at 240x135, of "
+                                          f"{measured['commit']} on {measured['device']}")
         write(FOLDER, path.stem, document)
 
 
@@ -180,7 +179,8 @@ def draw_methods(model):
 
 def main():
     parser = parser_of(__doc__, required=True)
-    parser.add_argument("device", metavar="DEVICE", nargs="?", type=use_device)
+    parser.add_argument("device", metavar="DEVICE", nargs="?", type=use_device,
+                        help="as --device of clpv takes it (default: the first)")
     parser.add_argument("--picture", action="store_true", help="the picture of images alone")
     parser.add_argument("--own", action="store_true", help="errors of clpv's own frames alone")
     arguments = parser.parse_args()

@@ -55,10 +55,6 @@ def views_gltf(scene, model):
     return gltf
 
 
-def lights_of(scene, camera):
-    return [camera["light"]] if "light" in camera else [light["name"] for light in scene["lights"]]
-
-
 def ground_truths(name, cameras, model):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
     return run("quality", f"scenes/{FILES.get(name, name)}.json",
@@ -91,14 +87,15 @@ def add_scene(folder, name, sponza):
                if not SCENES[name] or camera["name"] in SCENES[name]}
     gltf = views_gltf({**scene, "cameras": list(cameras.values())}, model)
     folder.write(f"cameras/{name}.gltf", json.dumps(gltf, indent=1) + "\n")
-    views = []
+    views, lights = [], [light["name"] for light in scene["lights"]]
     for traced in ground_truths(name, cameras, None if ours else sponza):
-        source = pathlib.Path(traced["file"])
+        source, camera = pathlib.Path(traced["file"]), cameras[traced["camera"]]
         truth = in_halves(source)
         folder.write(f"truths/{source.name}", truth)
         views.append({
             "name": f"{name}-{traced['camera']}", "scene": name, "camera": traced["camera"],
-            "lights": lights_of(scene, cameras[traced["camera"]]), "truth": f"truths/{source.name}",
+            "lights": [camera["light"]] if "light" in camera else lights,
+            "truth": f"truths/{source.name}",
             "sha256": hashlib.sha256(truth).hexdigest(), "noise": traced["noise"],
             "paths": traced["spp"], "exposure": scene.get("exposure", 0),
             "width": SIZE[0], "height": SIZE[1]})

@@ -2,11 +2,7 @@
 """Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->,
 from results/docs and lab/results.
 
-    scripts/tables            rewrites them in README.md, docs/ and lab/, and claims.json and
-                              expected.json in results/paper
-    scripts/tables --check    changes nothing; fails if one of them differs from the results
-    scripts/tables --list     names of all tables
-
+Rewrites them in README.md, docs/ and lab/, and claims.json and expected.json in results/paper.
 scripts/measure writes results/docs. tables.json has the tables, written as cells.py says, but for
 verdicts and light probes at equal bytes, which are functions here. Only the
 standard library.
@@ -17,7 +13,7 @@ import pathlib
 import re
 import sys
 
-from . import ROOT, RESULTS, bake as probes, expected, json_lines, output, verdicts
+from . import ROOT, RESULTS, bake as probes, expected, json_lines, output, parser_of, verdicts
 from .cells import LOADED, MEASURED, load, read, rows, table
 
 __all__ = ["MEASURED", "TABLES", "main", "read"]
@@ -182,23 +178,21 @@ def files():
 
 
 def main():
-    arguments = sys.argv[1:]
-    if arguments in (["-h"], ["--help"]):
-        print(__doc__.strip())
-        return 0
-    if arguments == ["--list"]:
+    parser = parser_of(__doc__, model=False)
+    parser.add_argument("--check", action="store_true",
+                        help="change nothing; fail if one of them differs from the results")
+    parser.add_argument("--list", action="store_true", help="print the names of all tables")
+    arguments = parser.parse_args()
+    if arguments.list:
         print("\n".join(["measured-on", *TABLES]))
         return 0
-    if arguments not in ([], ["--check"]):
-        print(__doc__.strip(), file=sys.stderr)
-        return 2
     differing = []
     for file, text in files():
         if not file.exists() or file.read_text(encoding="utf-8") != text:
             differing.append(str(file.relative_to(ROOT)))
-            if not arguments:
+            if not arguments.check:
                 output.write(file, text)
-    if arguments and differing:
+    if arguments.check and differing:
         print(f"{', '.join(differing)}: tables differ from results; run {sys.argv[0]}",
               file=sys.stderr)
         return 1

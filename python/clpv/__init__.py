@@ -10,20 +10,17 @@
 Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous intensity in candela
 as W/sr.
 
-    Scene, Camera, Light, Medium         a scene file, glTF model or meshes, and what can be changed
-                                         in it
-    Material                             surface of a mesh
-    Renderer, options(), devices()       frames on an OpenCL device: render, light, irradiance,
-                                         volumes, stats
-    DeviceFrame, DeviceVolumes           results as OpenCL memory, for pyopencl; DeviceEvent: when
-                                         they are complete
-    ms_of                                time of a stage in Renderer.stats["times"]
-    Image, read_image, compare           images as arrays, files, errors
-    pathtrace                            ground truth on the CPU
-    Basis, bases()                       functions on the sphere
-    clpv.draw                            charts (needs matplotlib); works without the native module
-    clpv.view                            python3 -m clpv.view SCENE, clpv.view.show(scene): viewer in
-                                         the browser (needs viser)
+    Scene, Camera, Light, Medium    a scene file, glTF model or meshes, and what can change in it
+    Material                        surface of a mesh
+    Renderer, options(), devices()  frames on an OpenCL device, light at points, volumes, stats
+    DeviceFrame, DeviceVolumes      results as OpenCL memory, for pyopencl
+    DeviceEvent                     when they are complete
+    ms_of                           time of a stage in Renderer.stats["times"]
+    Image, read_image, compare      images as arrays, files, errors
+    pathtrace                       ground truth on the CPU
+    Basis, bases()                  functions on the sphere
+    clpv.draw                       charts (needs matplotlib); works without the native module
+    clpv.view                       viewer in the browser (needs viser): python3 -m clpv.view SCENE
     Error, UsageError, InputError, DeviceError, ResourceError, ValidationError
 """
 import importlib

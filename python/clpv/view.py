@@ -80,10 +80,8 @@ def next_client(clients, now, traced=False):
     """The client with the fewest levels whose next one is due, of these the one that waits longest;
     or None. traced: path tracing follows the last level."""
     waits = [seconds for seconds, *_ in LEVELS] + [TRACED_AFTER] * traced
-    due = [
-        client for client in clients
-        if client.shown < len(waits) and now - client.changed >= waits[client.shown]
-    ]
+    due = [client for client in clients
+           if client.shown < len(waits) and now - client.changed >= waits[client.shown]]
     return min(due, key=lambda client: (client.shown, client.served), default=None)
 
 
@@ -311,9 +309,8 @@ def main(arguments=None):
     try:
         show(given.scene, model=given.model, host=given.host, port=given.port, device=given.device)
     except ImportError:
-        sys.exit(
-            "clpv.view: viser is not installed; in a virtual environment: python3 -m pip install "
-            f"viser=={view_gate.VISER}")
+        sys.exit("clpv.view: viser is not installed; in a virtual environment: "
+                 f"python3 -m pip install viser=={view_gate.VISER}")
     except (clpv.Error, RuntimeError) as error:
         sys.exit(f"clpv.view: {error}")
     except KeyboardInterrupt:

@@ -86,12 +86,12 @@ def test_the_suite_has_the_cameras_and_lights_of_its_scene():
 
 
 SIZE = 200  # pixels of a spherical plot, whose surfaces have known outlines
-GRID = sphere.directions((91, 180))
+GRID = sphere.directions((46, 91))
 
 
 def image_of(values, **options):
     figure = pyplot.figure(figsize=(2, 2), dpi=SIZE / 2)
-    axis = figure.add_axes((0, 0, 1, 1))
+    axis = figure.add_axes((0, 0, 1, 1), projection="3d")
     axis.axis("off")
     sphere.plot(axis, values, **options)
     figure.canvas.draw()
@@ -137,6 +137,11 @@ def test_what_is_nearer_hides():
 
 
 def test_an_axis_is_hidden_inside_and_behind():
-    points = numpy.array([[0, 0, 0.3], [0, 0, 0.9], -0.9 * sphere.TOWARDS, 0.9 * sphere.TOWARDS])
-    hidden = sphere.hidden(numpy.full(GRID.shape[:2], 0.5), points, 1.2)
-    assert hidden.tolist() == [True, False, True, False]
+    axis = pyplot.figure().add_subplot(projection="3d")
+    sphere.plot(axis, numpy.full(GRID.shape[:2], 0.5))
+    for line in axis.lines:
+        points = numpy.array(line.get_data_3d())
+        assert abs(points).sum(axis=0).min() == pytest.approx(0.5)
+        is_behind = points[0].sum() < 0 or points[1].sum() > 0 or points[2].sum() < 0
+        assert line.zorder == (0 if is_behind else 2)
+    pyplot.close()

@@ -11,12 +11,6 @@ def distinct(values):
     return list(dict.fromkeys(values))
 
 
-def error_bars(rows):
-    """Returns distances from the median down to the minimum and up to the 95th percentile."""
-    return [[max(0.0, r["median"] - r["min"]) for r in rows],
-            [max(0.0, r["p95"] - r["median"]) for r in rows]]
-
-
 def work_of(row):
     return f"{row['stage']} {row['basis']}" + (", occlusion" if row["occlusion"] else "")
 
@@ -29,12 +23,12 @@ def layouts(rows):
     figure, axes = style.panels(len(groups), 2, (4.5, 2.4))
     for axis, group in zip(axes, groups):
         members = sorted((r for r in rows if work_of(r) == group), key=lambda r: r["median"])
-        names = [
-            f"{r['layout']}/{r['storage']}" + ("" if r.get("filtered", True) else " texels")
-            for r in members
-        ]
+        names = [f"{r['layout']}/{r['storage']}{'' if r.get('filtered', True) else ' texels'}"
+                 for r in members]
         colours = [style.colour(1 if r["layout"] == "image" else 0) for r in members]
-        axis.barh(names, [r["median"] for r in members], xerr=error_bars(members), color=colours,
+        whiskers = [[max(0.0, r["median"] - r["min"]) for r in members],
+                    [max(0.0, r["p95"] - r["median"]) for r in members]]
+        axis.barh(names, [r["median"] for r in members], xerr=whiskers, color=colours,
                   error_kw={"lw": 0.8, "ecolor": style.INK})
         style.logarithmic(axis.xaxis)
         axis.set(title=group, xlabel="ms (median; whiskers: minimum to 95 %)")

@@ -6,10 +6,8 @@ from clpv import output
 
 NUMBER = (int, float)
 TEXT_OR_NULL = (str, type(None))
-NAMES = {
-    str: "text", int: "a number", float: "a number", bool: "true or false", dict: "an object",
-    type(None): "null"
-}
+NAMES = {str: "text", int: "a number", float: "a number", bool: "true or false",
+         dict: "an object", type(None): "null"}
 
 
 class BadDocument(output.Failure):
@@ -39,6 +37,6 @@ def checked(document, source, key, fields):
             if not isinstance(value, kind):
                 kinds = kind if isinstance(kind, tuple) else (kind,)
                 allowed = " or ".join(dict.fromkeys(NAMES[k] for k in kinds))
-                raise BadDocument(
-                    f"{source}: /{key}/{i}/{name} is {json.dumps(value)}; allowed: {allowed}")
+                raise BadDocument(f"{source}: /{key}/{i}/{name} is {json.dumps(value)}; allowed: "
+                                  f"{allowed}")
     return rows

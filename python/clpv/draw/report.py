@@ -20,15 +20,12 @@ from clpv import output
 from clpv.draw import bench, documents, style, viewer
 from clpv.draw.documents import NUMBER
 
-VARIANT = {
-    "options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER,
-    "energy_ratio": NUMBER, "frame_ms": NUMBER
-}
+VARIANT = {"options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER,
+           "energy_ratio": NUMBER, "frame_ms": NUMBER}
 
 
 def inlined(figure, titles=()):
-    """Returns a figure as inline SVG in the page's colours; titles[i] is the tooltip of the artist
-    "point<i>"."""
+    """A figure as inline SVG in the page's colours; titles[i]: tooltip of the artist point<i>."""
     if figure is None:
         return ""
     figure.tight_layout()
@@ -44,8 +41,7 @@ def inlined(figure, titles=()):
 
 
 def page_colours():
-    """Returns the page's colour names and their values in charts; the page replaces them on dark
-    screens."""
+    """Returns the page's colours by name, as charts have them; dark screens have others."""
     return {"ink": style.INK, "soft": style.SOFT, "line": style.LINE,
             **{f"c{i}": colour for i, colour in enumerate(style.COLOURS)}}
 
@@ -54,13 +50,11 @@ def variants(quality, marked):
     """Cells that were not rejected and have an error, best first."""
     rows = []
     for source in quality:
-        listed = source["document"].get("variants")
-        for i, row in enumerate(
-                documents.checked(source["document"], source["file"], "variants",
-                                  {"rejected": int})):
+        file = source["file"]
+        listed = documents.checked(source["document"], file, "variants", {"rejected": int})
+        for i, row in enumerate(listed):
             if row["rejected"] == 0 and row.get("nrmse", 0) is not None:
-                documents.checked({"variants": listed[i:i + 1]}, source["file"], "variants",
-                                  VARIANT)
+                documents.checked({"variants": listed[i:i + 1]}, file, "variants", VARIANT)
                 rows.append({**row, "name": " ".join(map(str, row["options"].values())),
                              "series": str(row["options"].get("transport", "preset")),
                              "marked": row["options"] in marked})
@@ -109,9 +103,8 @@ def table1(rows):
         cascade = "" if row.get("cascade") is None else f" cascade {row['cascade']}"
         line = (f"{row['stage']}{cascade}, lobes {row.get('lobe') or '-'}, "
                 f"{'with' if row.get('occlusion') else 'without'} indirect shadows")
-        ok = row["status"] == "ok"
-        lines.setdefault(line,
-                         {})[str(row["basis"])] = f"{row['median']:.3g}" if ok else row["status"]
+        cell = f"{row['median']:.3g}" if row["status"] == "ok" else row["status"]
+        lines.setdefault(line, {})[str(row["basis"])] = cell
     return bases, [(line, [cells.get(basis, "") for basis in bases])
                    for line, cells in lines.items()]
 

@@ -44,10 +44,8 @@ def table(rows):
     def line(tag, values):
         return f"<tr>{''.join(f'<{tag}>{html.escape(value)}</{tag}>' for value in values)}</tr>"
 
-    return "\n".join([
-        '<div class="scroll" id="scores"><table>', line("th", title), *(line("td", cells) for cells in lines),
-        "</table></div>"
-    ])
+    return "\n".join(['<div class="scroll" id="scores"><table>', line("th", title),
+                      *(line("td", cells) for cells in lines), "</table></div>"])
 
 
 def markup(views, rows):

@@ -37,22 +37,19 @@ def errors(frames, truth, valid, exposure):
     power = (target * target).sum()
     gain, nrmse_best_gain = gained(lit, numpy.broadcast_to(target, lit.shape))
     total = target.sum()
-    result = {
-        "nrmse": root_of_ratio(((lit - target)**2).sum() / len(lit),
-                               power), "best_gain": gain, "nrmse_best_gain": nrmse_best_gain,
-        "energy_ratio": lit.sum() / len(lit) / total if total else None
-    }
+    result = {"nrmse": root_of_ratio(((lit - target)**2).sum() / len(lit), power),
+              "best_gain": gain, "nrmse_best_gain": nrmse_best_gain,
+              "energy_ratio": lit.sum() / len(lit) / total if total else None}
     if exposure is not None and flip_evaluator:
         result["flip"] = numpy.mean(
             [flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])
     if len(lit) > 1:
         variance = lit.var(axis=0, ddof=1).sum()
         off = ((lit.mean(axis=0) - target) ** 2).sum()
-        result |= {
-            "bias": root_of_ratio(off - variance / len(lit),
-                                  power), "noise": root_of_ratio(variance, power),
-            "change": abs(numpy.diff(lit, axis=0)).sum() / (len(lit) - 1) / total if total else None
-        }
+        change = abs(numpy.diff(lit, axis=0)).sum() / (len(lit) - 1)
+        result |= {"bias": root_of_ratio(off - variance / len(lit), power),
+                   "noise": root_of_ratio(variance, power),
+                   "change": change / total if total else None}
     return result
 
 

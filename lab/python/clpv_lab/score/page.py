@@ -29,10 +29,8 @@ def compared(suite_folder, methods, only):
             read = suite.read_view(suite_folder, view, suite.frames_of(folder, view["name"]))
             rows.append({**suite.score_view(*read), "image": title})
             images.append(entry_with_error(title, read[-1], view, truth, alpha))
-        shown.append({
-            "name": view["name"], "width": truth.shape[1], "height": truth.shape[0],
-            "exposure": view["exposure"], "images": images
-        })
+        shown.append({"name": view["name"], "width": truth.shape[1], "height": truth.shape[0],
+                      "exposure": view["exposure"], "images": images})
     said = [f"{row['view']}, {row['image']}: {words}" for row in rows for words in row["suspected"]]
     return "\n".join([viewer.markup(shown, rows),
                       *(f'<p class="soft">{html.escape(words)}</p>' for words in said)])

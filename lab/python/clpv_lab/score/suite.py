@@ -50,8 +50,8 @@ def read_suite(folder):
     try:
         suite = json.loads(file.read_text(), object_pairs_hook=unique)
     except OSError as error:
-        raise BadImage(
-            f"{file}: {error.strerror}; allowed: a folder that lab/scripts/suite wrote") from None
+        raise BadImage(f"{file}: {error.strerror}; allowed: a folder that lab/scripts/suite "
+                       "wrote") from None
     except (ValueError, RecursionError) as error:
         raise BadImage(f"{file}: {error}") from None
     views = suite.get("views") if isinstance(suite, dict) else None
@@ -127,24 +127,18 @@ def score_view(view, truth, alpha, images, layer=LIGHT):
     frames = numpy.stack([rgb for rgb, _ in images])
     exposure = view["exposure"] if layer == LIGHT else None
     found = errors.errors(frames, truth, valid, exposure)
-    rounded = {
-        name: None if value is None else round(float(value), DIGITS)
-        for name, value in found.items()
-    }
+    rounded = {name: None if value is None else round(float(value), DIGITS)
+               for name, value in found.items()}
     missing = 1 - valid.sum() / (alpha > 0).sum()
     suspected = [f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene"
                  ] if missing > 0.02 else []
-    return {
-        "view": view["name"], **rounded, "frames": len(images), "truth_noise": view["noise"],
-        "suspected": suspected
-    }
+    return {"view": view["name"], **rounded, "frames": len(images), "truth_noise": view["noise"],
+            "suspected": suspected}
 
 
 def chosen(suite, only):
-    views = [
-        view for view in suite["views"] if any(
-            fnmatch.fnmatch(view["name"], pattern) for pattern in only)
-    ]
+    views = [view for view in suite["views"]
+             if any(fnmatch.fnmatch(view["name"], pattern) for pattern in only)]
     if not views:
         names = ", ".join(view["name"] for view in suite["views"])
         raise BadImage(f"--only {' '.join(only)}: found no view; allowed: {names}")
@@ -167,18 +161,14 @@ def score(folder: pathlib.Path, suite_folder: pathlib.Path, method: str | None =
         raise BadImage(
             f"{folder}: found no image of {', '.join(f'{name}.exr' for name in absent)}; allowed: all "
             f"{len(views)} views, or --only PATTERN")
-    rows = [
-        score_view(*read_view(suite_folder, view, files[view["name"]], layer), layer)
-        for view in views
-    ]
+    rows = [score_view(*read_view(suite_folder, view, files[view["name"]], layer), layer)
+            for view in views]
     means, undefined = {}, {}
     for measure in MEASURES:
         values = [row[measure] for row in rows if measure in row]
         if len(values) == len(rows):  # bias, noise and change need frames of all views
             undefined[measure] = values.count(None)
             means[measure] = None if None in values else round(sum(values) / len(values), DIGITS)
-    return {
-        "schema": SCHEMA, "suite": suite["hash"], "method": method or folder.resolve().name,
-        **({} if layer == LIGHT else {"layer": layer}), "mean": means, "undefined": undefined,
-        "complete": len(views) == len(suite["views"]), "views": rows
-    }
+    return {"schema": SCHEMA, "suite": suite["hash"], "method": method or folder.resolve().name,
+            **({} if layer == LIGHT else {"layer": layer}), "mean": means, "undefined": undefined,
+            "complete": len(views) == len(suite["views"]), "views": rows}
