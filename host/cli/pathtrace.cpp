@@ -148,7 +148,7 @@ void add_pathtrace(CLI::App& app, Shared& shared) {
       "Diffuse surfaces, hard shadows, one ray per pixel through its centre. `clpv compare` "
       "compares a rendered\n"
       "image with the result pixel by pixel. Emissive surfaces are light sources. Background "
-      "pixels are 0 with alpha 0.\n"
+      "pixels are 0 with alpha 0 without a sky.\n"
       "Time is proportional to the number of pixels: 240 x 135 pixels suffice for measurements.\n"
       "mpirun -n N clpv pathtrace ... traces with N ranks; the files are identical "
       "(docs/scale.md).");

@@ -143,7 +143,7 @@ const std::string kInMemory = "(in memory)";  // name and path of a scene withou
 const std::string kNoTriangles = "the model has no triangles",
                   kAddedCamera =
                       "no camera: added one outside, which sees a closed room's outer walls "
-                      "(options eye, target: another)",
+                      "(--eye, --target: another)",
                   kAddedSun = fmt::format("no light: added a sun of {} lux", kSunIlluminance);
 
 }  // namespace

@@ -8,7 +8,7 @@
 // p cannot see left out, and means over cascades by their shares. Outside all cascades the furnace
 // is white. over_furnace() divides.
 //
-// Where few surfaces are in sight along w, Y(w) . F < 1/2, the rest to 1/2 has the mean radiance of
+// Where few surfaces are in sight along w, Y . F < 1/2, the rest to 1/2 has the mean radiance of
 // all directions, C_0 / F_0. L may be negative: it is the light's projection on nine harmonics.
 // docs/method.md, 'The sweep', 'Gathering'.
 #pragma once
