@@ -133,9 +133,10 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("grid", o.grid, "cells along each axis of a cascade", Range{kLeastCells, kMaxCells});
   visit("cascades", o.cascades, "number of cascades, each twice as large as the previous one",
         Range{1, kMaxCascades});
-  visit("cascade-size", o.cascade_size,
-        "edge of the finest cascade [m]; default: from the scene, else 12.5",
-        Range{kMinMetres, kMaxMetres});
+  visit(
+      "cascade-size", o.cascade_size,
+      "edge of the finest cascade [m]; default: the scene file's, else 12.5, or fitted to a model",
+      Range{kMinMetres, kMaxMetres});
   visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map (RSM)",
         Range{kMinRsm, kMaxTexels});
   visit("rsm-format", o.rsm_format, "RSM format; paper: 32-bit depth, 8-bit normal and flux",
@@ -254,7 +255,7 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
   bool known = false;
   for_each_option(
       options, [&](const char* candidate, auto& member, const std::string&, const auto& allowed) {
-        if (name != candidate) return;
+        if (name != candidate && fmt::format("--{}", name) != flag_of(candidate)) return;
         known = true;
         if (!parse(value, allowed, member)) {
           throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, value,

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Stages and timed passes: the list that `clpv check`, frame times and benchmarks share. Switches
-// over these enumerations have no default, so that a new stage does not compile until every switch
-// handles it.
+// Stages and timed passes: the list that `clpv check`, frame times and benchmarks share. A pass's
+// name begins with its stage's and with no other's, since `clpv quality` sums its times so.
 #pragma once
 
 #include "support/named_enum.hpp"
 
 namespace clpv {
 
-/// A stage has one file stem in kernels/, pipeline/, reference/, verify/ and tests/. `sizes` checks
-/// the layout of structs that host and kernels share; it is not part of a frame and is checked
-/// first.
+/// A stage has one file stem in most folders (CONTRIBUTING.md). `sizes` checks structs that host and
+/// kernels share; it is not part of a frame and is checked first.
 enum class Stage {
   sizes,
   rasterize,

@@ -5,16 +5,16 @@
 //   cosine_integrals(x, y, z)    alpha_i(n) = Int b_i(w) max(0, w . n) dw of the unit vector n
 //   functions_at(x, y, z)        b_i(w), from a look-up table where the program has one
 //
-// From the host (Basis::add_literals): CLPV_BASIS, one of the three names below, and the tables
+// From the host (Basis::add_literals): CLPV_BASIS, one of three names below, and the tables
 // that its header lists; CLPV_FROM_TABLE 1: functions come from the table of G (table.h). With it,
 // the table is the last argument: CLPV_AND_G ends parameter lists, CLPV_PASS_G calls.
 #pragma once
 
 #include "volume/coefficients.h"
 
-#define CLPV_HARMONICS 0
-#define CLPV_RADIAL 1
-#define CLPV_BINS 2
+#define CLPV_HARMONICS 1
+#define CLPV_RADIAL 2
+#define CLPV_BINS 3
 
 #if CLPV_BASIS == CLPV_HARMONICS
 #include "basis/harmonics.h"

@@ -22,7 +22,7 @@
 //   n_a = (1 - t) a + t v, normalised      t = min(1, (1 / m_a - 1) / (|v|_1 - 1))
 //   v = V / |V|, V = W_a a + sum_c min(1, (1 / m_c - 1) / (1 / m_a - 1)) W_c c
 // c: the four faces across a; W: R_0 of albedo 1, the same in each use of a face.
-// With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
+// With CLPV_BANDED, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
 // cosine about its normal n in bands 0 and 1.
 //
@@ -209,7 +209,7 @@ CLPV_INLINE Coefficients reflected_intensity(const FaceFluxes flux, const FaceFl
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a) {
     const realW per_share =
-        CLPV_HARMONICS ? flux.c[a] / fmax(share.c[a], (realW)(CLPV_LEAST_SHARE)) : flux.c[a];
+        CLPV_BANDED ? flux.c[a] / fmax(share.c[a], (realW)(CLPV_LEAST_SHARE)) : flux.c[a];
     c.c[0] = fma((realW)(lobes[a][0]), flux.c[a], c.c[0]);
 #pragma unroll
     for (int i = 1; i < CLPV_N; ++i)

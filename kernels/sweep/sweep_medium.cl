@@ -78,7 +78,7 @@ CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const Sh
     for (int i = 0; i < W; ++i) {
       red[i] = green[i] = blue[i] = 0.0f;
       float3 along = (float3)(light.direction[0], light.direction[1], light.direction[2]);
-      if (light.kind == CLPV_LIGHT_POINT || light.kind == CLPV_LIGHT_SPOT) {
+      if (light.kind != CLPV_LIGHT_DIRECTIONAL) {
         const float3 centre = (float3)(x + i, y + r, z) + 0.5f;
         along = (float3)(grid.origin[0] - light.position[0], grid.origin[1] - light.position[1],
                          grid.origin[2] - light.position[2]) + grid.cell * centre;

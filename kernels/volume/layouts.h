@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Memory layouts of volumes, and what every instance of the template instance.h needs once.
 //
-// Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, with
-// arithmetic in single precision.
+// Literals: CLPV_LAYOUT, one of the four names below, 0 if undefined; CLPV_STORAGE_HALF 1: numbers
+// of 16 bits, with arithmetic in single precision.
 #pragma once
 
-#define CLPV_SOA 0
-#define CLPV_AOS 1
-#define CLPV_TILED 2
-#define CLPV_IMAGE 3
+#define CLPV_SOA 1
+#define CLPV_AOS 2
+#define CLPV_TILED 3
+#define CLPV_IMAGE 4
 
 // Joins two names: light, load -> light_load.
 #define CLPV_PASTE2(a, b) a##_##b

@@ -10,8 +10,9 @@ import clpv
 VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
 UNITS = {"irradiance": "W/m^2", "cells": "W/m^2", "albedo": "", "normal": "", "depth": "m"}
 RADIANCE = "W/m^2/sr"
-STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers",
-          "visibility", "propagate", "gather", "near-trace", "near", "medium", "shade")
+STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "emit", "inject-light",
+          "inject-geometry", "blockers", "reflectors", "propagate", "visibility", "gather",
+          "near-trace", "near", "medium", "shade")
 MID_DEPTH = 0.1  # that is shown as mid grey, of the scene's diagonal
 
 

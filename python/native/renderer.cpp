@@ -137,7 +137,7 @@ void add_renderer(py::module_& module) {
       "Renders frames of one scene on one OpenCL device.\n\n"
       "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the\n"
       "first usable one. context, queue: of pyopencl, or their int_ptr; the renderer works there.\n"
-      "The queue is in-order. options: those of `clpv render`, _ for - (lambda_, near);\n"
+      "The queue is in-order. options: those of `clpv render` with _ for - (and lambda_);\n"
       "options() lists them. bool is on or off. Results that do not change are cached from frame\n"
       "to frame. Calls from several threads run one after the other. Raises UsageError,\n"
       "DeviceError, ResourceError.");

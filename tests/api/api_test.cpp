@@ -348,8 +348,7 @@ TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
     for (const std::string& argument : compilation_of({}, options, "").helpers) {
       const auto equals = argument.find('=');
       if (equals == std::string::npos) continue;
-      const std::string name = argument.substr(2, equals - 2);
-      given[name == "near-field" ? "near" : name] = argument.substr(equals + 1);
+      given[argument.substr(2, equals - 2)] = argument.substr(equals + 1);
     }
     EXPECT_EQ(to_json(resolve_options(given, SceneData{})), to_json(options)) << name_of(preset);
   }

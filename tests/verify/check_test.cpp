@@ -41,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Check, Kernels, ::testing::ValuesIn(values_of<Stage>())
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
 // Building kernels is nearly all of the time. So only the default frame's format and bases are
-// compared here: tests/support/helpers_test.cpp compares the published scheme,
-// tests/volume/volume_test.cpp stores and loads all formats. LongKernels has the other rows.
+// compared here: tests/support/helpers_test.cpp compares the published scheme. LongKernels has the
+// other rows.
 TEST_P(Kernels, AgreeWithTheReference) {
   verify::Cases cases = verify::cases_of(GetParam(), {.formats = {}});
   std::erase_if(cases, [](const verify::Case& compared) {

@@ -67,7 +67,7 @@ Literals bounce_literals(const Basis& basis) {
   return source_literals(basis)
       .matrix("CLPV_INCIDENT", incident_flux())
       .matrix("CLPV_LOBES", transposed(reflected_intensity(basis)))
-      .flag("CLPV_HARMONICS", basis.bands() > 0)
+      .flag("CLPV_BANDED", basis.bands() > 0)
       .real("CLPV_LEAST_SHARE", kLeastShare)
       .real("CLPV_LEAST_WHITE", kLeastWhite)
       .real("CLPV_MAX_RETURNED", kMaxReturned)
