@@ -7,7 +7,7 @@
 
 namespace clpv {
 
-/// A stage has one file stem in most folders (CONTRIBUTING.md). `sizes` checks structs that host and
+/// A stage has one stem in most folders (CONTRIBUTING.md). `sizes` checks structs that host and
 /// kernels share; it is not part of a frame and is checked first.
 enum class Stage {
   sizes,
