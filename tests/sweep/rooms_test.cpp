@@ -406,7 +406,9 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
       const SceneData scene = sealed_room(degrees, offset, 0, axis);
       EXPECT_LT(leak(scene, offset + eye, Bounces::one), 0.001) << degrees << ' ' << shift;
       EXPECT_LT(leak(scene, offset + eye, Bounces::all), 0.012) << degrees << ' ' << shift;
-      EXPECT_LT(leak(scene, offset + eye, Bounces::all, Near::traced), 0.025) << shift;
+      // Ends of rays that are not lifted: 0.0025 to 0.003 about the skew axis.
+      EXPECT_LT(leak(scene, offset + eye, Bounces::all, Near::traced), axis == up ? 0.008 : 0.002)
+          << degrees << ' ' << shift;
     }
     EXPECT_LT(leak(sealed_room(degrees, {}, kCell, axis), eye, Bounces::all), 0.004) << degrees;
   }
