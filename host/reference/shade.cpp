@@ -165,8 +165,9 @@ glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& positio
                facing = glm::dot(geometric, incident.towards);
   if (cosine <= 0 || facing <= 0) return glm::dvec3(0);
   if (light.maps.empty()) return cosine * incident.irradiance;
-  const ShadowMap& map = map_towards(light.maps, position - vector(light.maps.front().view.eye));
   const bool flat = glm::dot(geometric, normal) > double{CLPV_SAME_NORMAL};
+  if (!flat && facing <= double{CLPV_SHADOW_GRAZING}) return glm::dvec3(0);
+  const ShadowMap& map = map_towards(light.maps, position - vector(light.maps.front().view.eye));
   return cosine * visibility(map, position, geometric, facing, flat) * incident.irradiance;
 }
 

@@ -236,12 +236,13 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   *lit &= (cosine > ZERO) & (facing > ZERO);
   irradiance = vec_times(irradiance, cosine);
   if (shadow.count == 0) return irradiance;
+  const intW flat = vec_dot(geometric, normal) > (realW)(CLPV_SAME_NORMAL);
+  *lit &= flat | (facing > (realW)(CLPV_SHADOW_GRAZING));
   const ClpvView view = shadow.views[shadow.which];
   const Vec offset = vec_minus(position, vec_of(view.eye));
   if (shadow.count > 1) *lit &= view_covers(shadow.views, shadow.count, shadow.which, offset);
   Receivers r;
   find_receivers(view, offset, geometric, facing, &r);
-  const intW flat = vec_dot(geometric, normal) > (realW)(CLPV_SAME_NORMAL);
   r.rounding +=
       CLPV_SHADOW_ROUNDING_PLACE * (fabs(position.x) + fabs(position.y) + fabs(position.z));
   r.rounding = flat ? r.rounding : (realW)(INFINITY);  // below no surface

@@ -24,6 +24,9 @@ enum {
 #define CLPV_SHADOW_LIFT_FLAT 0.25f
 #define CLPV_SHADOW_LIFT_SLOPED 0.5f
 #define CLPV_SHADOW_LIFT_DEPTH 3.0f  // [texels]
+// Least cosine of the light's angle to the triangle of a curved mesh: below, occluders within the
+// filter's width of its plane would let light pass, with the weight of the interpolated normal.
+#define CLPV_SHADOW_GRAZING 0.005f
 
 // A receiver below a surface of the map (shadow.h) has no lift, but for rounding: in texels of the
 // map, and relative to its depth.

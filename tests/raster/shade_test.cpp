@@ -328,7 +328,7 @@ TEST(Shadow, GrazingLightDoesNotPassUnderWhatIsFarTowardsIt) {
   // A roof half a texel above a floor of a curved mesh, 6 texels away along the light.
   SurfaceImage image = floor_image();
   for (glm::vec4& normal : image.normal)
-    normal = stored_normal(glm::normalize(glm::dvec3(0.1, 1, 0)), kUp);
+    normal = stored_normal(glm::normalize(glm::dvec3(-0.1, 1, 0)), kUp);
   const double angle = 85.0 / 180 * pi, height = 0.5 * kTexel;
   const glm::dvec3 direction(std::sin(angle), -std::cos(angle), 0);
   const Geometry casting = [&](const glm::dvec3& o, const glm::dvec3& d) {
@@ -342,6 +342,8 @@ TEST(Shadow, GrazingLightDoesNotPassUnderWhatIsFarTowardsIt) {
     if (x < -beyond) ASSERT_EQ(e[pixel], 0.0) << "light under the roof at x " << x;
     if (x > beyond) ASSERT_GT(e[pixel], 0.0) << "x " << x;
   }
+  // Light along the mesh passes any roof within the filter's width of its plane.
+  EXPECT_THAT(lit(image, {sun({1, -0.004, 0}, 7, casting)}), ::testing::Each(0.0));
 }
 
 // A floor that the light grazes at up to 87 degrees; and a room whose walls are oblique to the six
