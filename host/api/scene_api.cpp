@@ -126,6 +126,14 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
   ++contents_->rebuilds, ++contents_->changes;
 }
 
+void Scene::set_sky(const Vec3& above, const Vec3& below) {
+  contents_->change_sky(scene_sky(above, below, rejected_in("sky")));
+}
+
+void Scene::set_sky_map(const std::filesystem::path& map, double scale, double degrees) {
+  contents_->change_sky(scene_sky(map, scale, degrees, rejected_in("sky")));
+}
+
 int Scene::add_mesh(const Mesh& mesh, const Transform& transform) {
   int number = 0;
   contents_->change_meshes([&](AddedMeshes& meshes, SceneData& scene) {
@@ -205,6 +213,7 @@ bool PosedScene::pose(double seconds) {
   if (const auto& cameras = file_.contents().cameras) posed_->set_cameras(*cameras);
   if (const auto& lights = file_.contents().lights) posed_->set_lights(*lights);
   posed_->set_medium(file_.contents().moving.scene().medium);
+  posed_->set_sky(file_.contents().moving.scene().sky);
   posed_->pose(seconds);
   return true;
 }

@@ -35,6 +35,12 @@ struct Scene::Contents {
     ++geometries, ++changes, rebuilds += rebuilds_frames ? 1 : 0;
   }
 
+  void change_sky(std::shared_ptr<const Sky> sky) {
+    const std::lock_guard lock(mutex);
+    moving.set_sky(std::move(sky));
+    ++rebuilds, ++changes;
+  }
+
   Contents() = default;
   Contents(const std::filesystem::path& path, const std::filesystem::path& model)
       : moving(path, model) {}

@@ -269,7 +269,7 @@ void add_options(CLI::App& command, Options& options) {
   add_tracing_options(command, options.tracing);
   for (const char* name : {"--spp", "--noise", "--seed"})
     options.of_paths.push_back(command.get_option(name));
-  add_render_request(command, options.request);
+  add_point_request(command, options.request);
 }
 
 }  // namespace bake_command

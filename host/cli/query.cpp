@@ -195,7 +195,7 @@ void add_query(CLI::App& app, Shared& shared) {
   CLI::Option* bounces = command->get_option("--bounces");
   for (const char* name : {"--spp", "--noise", "--seed", "--threads"})
     options->of_truth.push_back(command->get_option(name));
-  add_render_request(*command, options->request);
+  add_point_request(*command, options->request);
   command->footer(
       "Adds red,green,blue to each point: the irradiance of indirect light on a surface there "
       "[W/m^2], like --view\nirradiance with --near-field off. Outside the cascades, which "

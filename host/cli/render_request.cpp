@@ -46,6 +46,12 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
   add_frame_options(command, request.frame);
 }
 
+void add_point_request(CLI::App& command, RenderRequest& request) {
+  add_render_request(command, request);
+  for (const char* name : {"--near-field", "--near-size", "--near-rays"})
+    command.get_option(name)->group("");
+}
+
 void add_display_options(CLI::App& command, DisplayRequest& display) {
   add_number(command, "--exposure", "EV", display.exposure,
              "exposure of a PNG [EV] (default: the scene's, or automatic, by the logarithmic mean "

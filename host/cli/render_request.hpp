@@ -68,6 +68,8 @@ void write_views(const std::string& output, const std::vector<Show>& views,
 
 /// Adds the options for scene, camera and frames.
 void add_render_request(CLI::App& command, RenderRequest& request);
+/// The same for points: the near field, which only pixels have, is not in its help.
+void add_point_request(CLI::App& command, RenderRequest& request);
 
 /// Adds the options for PNG files.
 void add_display_options(CLI::App& command, DisplayRequest& display);

@@ -186,6 +186,12 @@ bool rounding_decides(const glm::dvec3& at, const ClearWay& clear, double cell, 
          (rounding_decides(*place, n) || rounding_decides(next_place(*place, clear.eye), n));
 }
 
+bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint8_t* occluded) {
+  const ClearPoint p = sample_point(a, n, occluded), q = sample_point(b, n, occluded);
+  const glm::ivec3 apart = glm::abs(q.cube - p.cube);
+  return std::max({apart.x, apart.y, apart.z}) > 1 || (p.seen & cells_from(q, p.cube)) != 0;
+}
+
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample) {
   std::vector<double> c(volume.coefficients, 0.0);
   for (std::size_t corner = 0; corner < 8; ++corner) {

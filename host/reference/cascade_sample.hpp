@@ -41,6 +41,10 @@ TrilinearSample sample_of(const GatherOptions& options, const Cascade& cascade,
 bool rounding_decides(const glm::dvec3& at, int n);
 bool rounding_decides(const glm::dvec3& at, const ClearWay& clear, double cell, int n);
 
+/// Returns whether the sample points at `a` and `b` [cells] see a cell in common; true if they are
+/// farther apart than cells that have one.
+bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint8_t* occluded);
+
 /// Interpolated coefficients of one channel.
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample);
 

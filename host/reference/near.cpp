@@ -16,9 +16,9 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kSameNormal = 0.7, kSamePlane = 0.1;    // near_surface.h
-constexpr double kWidened = 0.2, kDark = 0.25;           // near_filter.cl
-constexpr double kLeastArriving = 0.5, kEndLift = 0.15;  // near.cl
+constexpr double kSameNormal = 0.7, kSamePlane = 0.1;                        // near_surface.h
+constexpr double kWidened = 0.2, kDark = 0.25;                               // near_filter.cl
+constexpr double kLeastArriving = 0.5, kEndLift = 0.15, kMiddleLift = 0.22;  // near.cl
 
 bool close_to(double value, double limit) {
   return std::abs(value - limit) < kNearEdge * std::max(1.0, std::abs(limit));
@@ -48,6 +48,7 @@ struct NearField {
               const ClearWay& clear) const {
     return rounding_decides(options.gather, scene.cascades, position, offset, lift, clear);
   }
+  bool in_sight(NearPoint& point, const glm::dvec3& off) const;
   double trust(const RadianceField& field, const glm::dvec3& normal) const;
   glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
                          bool& uncertain) const;
@@ -63,6 +64,27 @@ double NearField::reach_at(const glm::dvec3& position) const {
     rest *= 1 - share;
   }
   return reach;
+}
+
+/// Whether the place at `off` from a point sees a cell that the point towards the eye sees, in the
+/// finest cascade that lights it.
+bool NearField::in_sight(NearPoint& point, const glm::dvec3& off) const {
+  if (options.gather.gather != Gathering::visible || point.clear == glm::dvec3(0)) return true;
+  const double reach = 1.0001 * point.reach;
+  std::size_t c = 0;
+  while (c + 1 < scene.cascades.size() && double{scene.cascades[c + 1].grid.cell} <= reach) ++c;
+  for (const Cascade& each : scene.cascades)
+    point.uncertain = point.uncertain || std::abs(reach / double{each.grid.cell} - 1) < 1e-5;
+  const Cascade& cascade = scene.cascades[c];
+  const double cell = cascade.grid.cell;
+  const auto in_cells = [&](const glm::dvec3& way) {
+    const glm::dvec3 at = (point.position + way - vector(cascade.grid.origin)) / cell - 0.5;
+    point.uncertain = point.uncertain || rounding_decides(at, options.gather.grid);
+    return at;
+  };
+  const double far = glm::length(point.clear);
+  return see_a_cell(in_cells(point.clear * std::min(1.0, 0.85 * point.reach / far)), in_cells(off),
+                    options.gather.grid, cascade.occluded);
 }
 
 double sum(const glm::dvec3& v) {
@@ -146,8 +168,11 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
     if (hit) {
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
     } else {
-      const glm::dvec3 off = point.reach * (w + kEndLift * point.lift), end = point.position + off;
-      const ClearWay clear(-off / 2.0, point.clear);
+      const glm::dvec3 middle = w / 2.0 + kMiddleLift * point.lift;
+      const bool open = share == 0 || in_sight(point, point.reach * middle);
+      const glm::dvec3 way = open ? w + kEndLift * point.lift : w,
+                       end = point.position + point.reach * way;
+      const ClearWay clear(point.reach * ((open ? middle : w / 2.0) - way), point.clear);
       point.difference += share * (radiance(basis, field_at(end, 0, point.normal, clear), -w) - v);
       point.uncertain = point.uncertain || (share > 0 && unsure(end, 0, point.normal, clear));
     }

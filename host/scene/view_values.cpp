@@ -10,6 +10,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/scene.hpp"
+#include "scene/sky.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -144,6 +145,21 @@ ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject, double
   store_floats(made.lower, lower * metres_per_unit);
   store_floats(made.upper, upper * metres_per_unit);
   return made;
+}
+
+std::shared_ptr<const Sky> scene_sky(const Vec3& above, const Vec3& below,
+                                     const RejectMember& reject) {
+  const glm::vec3 high(checked("above", above, bounds::kSkyRadiance, false, reject)),
+      low(checked("below", below, bounds::kSkyRadiance, false, reject));
+  if (high == glm::vec3(0) && low == glm::vec3(0)) return nullptr;
+  return std::make_shared<Sky>(high == low ? constant_sky(high) : sky_with_ground(high, low));
+}
+
+std::shared_ptr<const Sky> scene_sky(const std::filesystem::path& map, double scale, double degrees,
+                                     const RejectMember& reject) {
+  check_number("scale", scale, 0, bounds::kSkyRadiance, reject);
+  check_number("degrees", degrees, -360, 360, reject);
+  return std::make_shared<Sky>(read_sky(map, scale, glm::radians(degrees)));
 }
 
 Medium medium_of(const ClpvMedium& medium) {

@@ -27,6 +27,12 @@ SceneLight scene_light(const Light& light, const RejectMember& reject, double me
 ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject,
                         double metres_per_unit = 1);
 
+/// Null if all is dark; and of a map, turned by `degrees`.
+std::shared_ptr<const Sky> scene_sky(const Vec3& above, const Vec3& below,
+                                     const RejectMember& reject);
+std::shared_ptr<const Sky> scene_sky(const std::filesystem::path& map, double scale, double degrees,
+                                     const RejectMember& reject);
+
 Camera camera_of(const SceneCamera& camera);
 Light light_of(const SceneLight& light);
 Medium medium_of(const ClpvMedium& medium);

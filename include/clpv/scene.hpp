@@ -91,6 +91,14 @@ class Scene {
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);
 
+  /// Replace the sky: radiance [W/m^2/sr] above and below the horizon, all zero for no sky; or an
+  /// equirectangular map (.exr, .hdr) whose top row is at +y and whose centre at -z, times `scale`
+  /// and turned towards +x. Lights stay, also the sun that a scene without lights gets. After a
+  /// change, the next frame of each renderer allocates its memory again. Throw Error: usage
+  /// (numbers below 0, above 1e10 or not finite), bad_input (the map).
+  void set_sky(const Vec3& above, const Vec3& below = {});
+  void set_sky_map(const std::filesystem::path& map, double scale = 1, double degrees = 0);
+
   /// Adds a mesh at a place in the world, and returns a number for it that is not used again.
   /// Throws Error(bad_input) that names array, index, value found and value allowed, for indices
   /// out of range, numbers that are not finite or out of bounds, arrays of vertices that differ in

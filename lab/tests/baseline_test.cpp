@@ -31,8 +31,6 @@
 
 namespace clpv::baseline_test {
 
-namespace {
-
 namespace fs = std::filesystem;
 using std::numbers::pi_v;
 using test::QualityCommand;
@@ -228,7 +226,5 @@ TEST_F(QualityCommand, ASceneDoesNotChooseWhereImagesLie) {
   EXPECT_THAT(names, ElementsAre("paths", testing::MatchesRegex("paths/room-__-[0-9a-f]*.exr"),
                                  testing::MatchesRegex("paths/room-x_+victim-[0-9a-f]*.exr")));
 }
-
-}  // namespace
 
 }  // namespace clpv::baseline_test

@@ -76,6 +76,15 @@ void add_scene(py::module_& module) {
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene "
       "allocates its memory again.");
   type.def(
+      "set_sky", &Scene::set_sky, py::arg("above"), py::arg("below") = Vec3{},
+      py::call_guard<WithoutGil>(),
+      "Replaces the sky: radiance (R, G, B) [W/m^2/sr] above and below the horizon; zeros: none.\n"
+      "Lights stay. The next frame of each renderer allocates its memory again.");
+  type.def("set_sky_map", &Scene::set_sky_map, py::arg("map"), py::arg("scale") = 1.0,
+           py::arg("degrees") = 0.0, py::call_guard<WithoutGil>(),
+           "The same by an equirectangular map (.exr, .hdr): top row at +y, centre at -z, turned\n"
+           "towards +x.");
+  type.def(
       "save",
       [](const Scene& scene, const std::filesystem::path& path) {
         interruptible([&] { scene.save(path); });

@@ -24,8 +24,6 @@
 
 namespace clpv::api_test {
 
-namespace {
-
 using ::testing::HasSubstr;
 
 using test::kCornell;
@@ -151,6 +149,34 @@ TEST(Api, AMediumCanBeSetAndRemoved) {
   rejected("absorption", {.absorption = {0, NAN, 0}});
   rejected("anisotropy", {.anisotropy = 1});
   rejected("box", {.box = std::array{Vec3{0, 0, 0}, Vec3{1, 0, 1}}});
+}
+
+TEST(Api, ASkyCanBeSetAndRemoved) {
+  const test::TemporaryFolder folder;
+  std::filesystem::copy_file(CLPV_SOURCE_DIR "/scenes/cornell.glb", folder / "room.glb");
+  const Scene file(folder.write("sky.json", R"({"model": "room.glb",
+      "sky": {"radiance": [1, 2, 3], "ground": [0.5, 0, 0]}})"));
+  Scene scene(folder.write("room.json", R"({"model": "room.glb"})"));
+  scene.set_lights({});  // without the sun that a scene without a sky gets
+  Renderer renderer(scene, test::small_options());
+  const Image before = renderer.render();
+  scene.set_sky({1, 2, 3}, {0.5, 0, 0});
+  const Image lit = renderer.render();
+  EXPECT_EQ(lit.pixels, Renderer(file, test::small_options()).render().pixels);
+  EXPECT_NE(lit.pixels, before.pixels);
+  scene.set_sky({1, 2, 3}, {1, 2, 3});
+  const Image even = renderer.render();
+  Image texel;
+  texel.width = texel.height = 1, texel.channels = {"R", "G", "B"}, texel.pixels = {1, 2, 3};
+  save_image(folder / "sky.exr", texel);
+  scene.set_sky({});
+  EXPECT_EQ(renderer.render().pixels, before.pixels);
+  scene.set_sky_map(folder / "sky.exr");
+  EXPECT_EQ(renderer.render().pixels, even.pixels);
+  EXPECT_THROW(scene.set_sky({1, -1, 0}), Error);
+  EXPECT_THROW(scene.set_sky({}, {0, 0, NAN}), Error);
+  EXPECT_THROW(scene.set_sky_map(folder / "sky.exr", 1, 400), Error);
+  EXPECT_THROW(scene.set_sky_map(folder / "none.exr"), Error);
 }
 
 TEST(Api, VolumesHoldTheLight) {
@@ -354,5 +380,4 @@ TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::api_test

@@ -13,8 +13,6 @@
 #include "tests/support/scenes.hpp"
 
 namespace clpv::light_test {
-namespace {
-
 using ::testing::HasSubstr;
 using Vectors = std::vector<std::array<float, 3>>;
 using test::colours;
@@ -208,5 +206,4 @@ TEST(Light, RejectsBadSizesAndCameras) {
               HasSubstr("blockers 'seen'"));
 }
 
-}  // namespace
 }  // namespace clpv::light_test

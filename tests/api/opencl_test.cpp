@@ -22,8 +22,6 @@
 #include "tests/support/scenes.hpp"
 
 namespace clpv::opencl_test {
-namespace {
-
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Vectors = std::vector<std::array<float, 3>>;
@@ -369,5 +367,4 @@ TEST(OpenCl, ObjectsOfAFrameInFlightMayGo) {
   EXPECT_EQ(own.read(next.image, 4 * 48 * 27), without);
 }
 
-}  // namespace
 }  // namespace clpv::opencl_test

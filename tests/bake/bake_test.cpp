@@ -31,8 +31,6 @@
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::bake_test {
-namespace {
-
 using namespace bake;
 using namespace test;
 using ::testing::HasSubstr;
@@ -380,5 +378,4 @@ TEST_F(BakeCommand, BadInputIsNamedBeforeTheWork) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-}  // namespace
 }  // namespace clpv::bake_test

@@ -14,8 +14,6 @@
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::probe_formats_test {
-namespace {
-
 using namespace bake;
 using namespace test;
 using std::numbers::pi;
@@ -157,5 +155,4 @@ TEST(Ktx2, LightBeyondHalvesIsScaled) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::probe_formats_test

@@ -19,8 +19,6 @@
 
 namespace clpv::program_cache_test {
 
-namespace {
-
 namespace fs = std::filesystem;
 using Binary = ProgramCache::Binary;
 
@@ -239,5 +237,4 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
     EXPECT_THAT(message, HasSubstr(words));
 }
 
-}  // namespace
 }  // namespace clpv::program_cache_test

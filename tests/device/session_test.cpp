@@ -22,8 +22,6 @@
 
 namespace clpv::session_test {
 
-namespace {
-
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -372,5 +370,4 @@ TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
               AllOf(HasSubstr("\"faulty_drivers\": [\n"), HasSubstr("aborts.icd")));
 }
 
-}  // namespace
 }  // namespace clpv::session_test

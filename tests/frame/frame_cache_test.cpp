@@ -18,8 +18,6 @@
 #include "tests/support/run_program.hpp"
 
 namespace clpv::frame_cache_test {
-namespace {
-
 TEST(Cached, HoldsNothingAfterAFailure) {
   Cached cached;
   cached.update(1, [] {});
@@ -312,5 +310,4 @@ TEST(FrameWork, DoesNotGrow) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::frame_cache_test

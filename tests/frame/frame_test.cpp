@@ -37,8 +37,6 @@
 
 namespace clpv::frame_test {
 
-namespace {
-
 namespace fs = std::filesystem;
 using test::json;
 using test::scene_file;
@@ -410,5 +408,4 @@ TEST(Smooth, GeometricNormalsKeepTheirDirection) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::frame_test

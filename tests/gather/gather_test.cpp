@@ -20,8 +20,6 @@
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::gather_test {
-namespace {
-
 using namespace test;
 
 constexpr int kGrid = 12;        // cells of a cascade along each axis
@@ -291,5 +289,4 @@ TEST(Gather, RejectsWhatDoesNotFit) {
   EXPECT_THROW(gatherer.gather(camera, {{grid_of(0)}, {}}, e), Error);
 }
 
-}  // namespace
 }  // namespace clpv::gather_test

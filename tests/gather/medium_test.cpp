@@ -25,8 +25,6 @@
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::medium_test {
-namespace {
-
 using std::numbers::pi;
 using namespace test;
 
@@ -314,5 +312,4 @@ TEST(Medium, ScatteredLightFallsOnSurfaces) {
               PathTracerOptions::kAllBounces);
 }
 
-}  // namespace
 }  // namespace clpv::medium_test

@@ -30,8 +30,6 @@
 
 namespace clpv::near_test {
 
-namespace {
-
 using std::numbers::pi;
 using namespace test;
 
@@ -355,5 +353,4 @@ TEST(TriangleTree, OfNothingIsEmpty) {
   EXPECT_TRUE(tree.leaves().empty());
 }
 
-}  // namespace
 }  // namespace clpv::near_test

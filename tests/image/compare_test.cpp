@@ -19,8 +19,6 @@
 
 namespace clpv::compare_test {
 
-namespace {
-
 /// Every pixel (r, g, b, 1).
 Image plain(int width, int height, float r, float g, float b) {
   Image image = make_image(width, height, {"R", "G", "B", "A"});
@@ -218,5 +216,4 @@ TEST(Flip, FinerPixelsAreSeenLess) {
   EXPECT_LT(mean(flip(stripes, grey, 200)), 0.8 * mean(flip(stripes, grey)));
 }
 
-}  // namespace
 }  // namespace clpv::compare_test

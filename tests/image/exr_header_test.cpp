@@ -17,8 +17,6 @@
 
 namespace clpv::exr_header_test {
 
-namespace {
-
 using namespace std::string_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -239,5 +237,4 @@ TEST(ImageHeader, AWebpIsLeftWithWhatItsPixelsNeed) {
   EXPECT_EQ(stripped(more, false), test::decode_base64(test::kWebpLossy)) << "opaque";
 }
 
-}  // namespace
 }  // namespace clpv::exr_header_test

@@ -15,8 +15,6 @@
 
 namespace clpv::plain_codec_test {
 
-namespace {
-
 std::string_view text_of(const std::vector<unsigned char>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -237,5 +235,4 @@ TEST(RadiancePictures, LinesThatCannotBeHonouredAreRejected) {
                 HasSubstr("resolution: found '" + std::string(resolution)));
 }
 
-}  // namespace
 }  // namespace clpv::plain_codec_test

@@ -124,8 +124,6 @@ inline std::string exr_file(const std::vector<ExrPart>& parts) {
 
 namespace clpv::image_kinds_test {
 
-namespace {
-
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -399,7 +397,5 @@ TEST(PngKinds, ColourDataOtherThanSrgbIsNamed) {
   both.insert(33, "\0\0\0\1sRGB\0\0\0\0\0"s);
   EXPECT_THAT(notes(both), IsEmpty());
 }
-
-}  // namespace
 
 }  // namespace clpv::image_kinds_test

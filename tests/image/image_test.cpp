@@ -17,8 +17,6 @@
 #include "tests/support/run_program.hpp"
 
 namespace clpv::image_test {
-namespace {
-
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
@@ -295,5 +293,4 @@ TEST(DisplayImage, ExposureDoublesAndBackgroundIsBlackOrClear) {
   for (int c = 0; c < 4; ++c) EXPECT_EQ(shown.at(1, 0, c), 0.0f);
 }
 
-}  // namespace
 }  // namespace clpv::image_test

@@ -20,8 +20,6 @@
 #include "verify/check.hpp"
 
 namespace clpv::emit_test {
-namespace {
-
 using namespace test;
 using std::numbers::pi;
 
@@ -206,5 +204,4 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
   EXPECT_NEAR(mean(found, 2), mean(found, 0) / 4, 1e-3 * wanted);
 }
 
-}  // namespace
 }  // namespace clpv::emit_test

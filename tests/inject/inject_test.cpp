@@ -25,8 +25,6 @@
 #include "verify/jobs.hpp"
 
 namespace clpv::inject_test {
-namespace {
-
 using test::test_session;
 
 constexpr int kGrid = 8;
@@ -410,5 +408,4 @@ TEST(SortByCell, RejectsMoreTexelsThanRunsCanName) {
   EXPECT_THROW(sorter.reserve((std::size_t{1} << 28) + 1), Error);
 }
 
-}  // namespace
 }  // namespace clpv::inject_test

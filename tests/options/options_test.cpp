@@ -25,8 +25,6 @@
 #include "times/time_record.hpp"
 
 namespace clpv::options_test {
-namespace {
-
 using ::testing::HasSubstr;
 
 std::string value_of(const RenderOptions& options, const std::string& name) {
@@ -215,5 +213,4 @@ TEST(Presets, QualityTakesAPresetsTransport) {
   EXPECT_NE(cells[0]["nrmse"], cells[1]["nrmse"]);
 }
 
-}  // namespace
 }  // namespace clpv::options_test

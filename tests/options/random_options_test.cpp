@@ -26,8 +26,6 @@
 #include "tests/support/run_here.hpp"
 
 namespace clpv::random_options_test {
-namespace {
-
 using namespace test;
 
 /// A sequence of choices, from a random generator.
@@ -306,5 +304,4 @@ TEST_F(LongRandomOptions, GiveAnImageOrAReason) {
   expect_images_or_reasons(number_from("CLPV_RANDOM_KERNELS", kLongKernels));
 }
 
-}  // namespace
 }  // namespace clpv::random_options_test

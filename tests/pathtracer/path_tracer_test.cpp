@@ -18,8 +18,6 @@
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::path_tracer_test {
-namespace {
-
 using std::numbers::pi;
 using namespace test;
 
@@ -438,5 +436,4 @@ TEST(RayScene, SeesWhatTheRasteriserSees) {
   EXPECT_LT(differ, seen / 200);
 }
 
-}  // namespace
 }  // namespace clpv::path_tracer_test

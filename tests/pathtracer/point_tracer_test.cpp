@@ -30,8 +30,6 @@
 
 namespace clpv::point_tracer_test {
 
-namespace {
-
 using namespace test;
 using pathtracer::PointLight;
 using pathtracer::PointTracer;
@@ -307,5 +305,4 @@ TEST_F(CachedReference, KeyDependsOnEveryInput) {
   EXPECT_FALSE(get().traced) << "neither of these changes the image";
 }
 
-}  // namespace
 }  // namespace clpv::point_tracer_test

@@ -18,8 +18,6 @@
 #include "times/time_record.hpp"
 
 namespace clpv::quality_test {
-namespace {
-
 namespace fs = std::filesystem;
 using test::QualityCommand;
 using ::testing::ElementsAre;
@@ -196,5 +194,4 @@ TEST_F(QualityCommand, AnImageHasTheHashOfTheTruthOfItsScene) {
   EXPECT_NE(hash_of(file("ours.exr")), truth) << "another sun";
 }
 
-}  // namespace
 }  // namespace clpv::quality_test

@@ -19,8 +19,6 @@
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::rasterize_test {
-namespace {
-
 using test::add_material;
 using test::add_quad;
 using test::camera_at;
@@ -352,5 +350,4 @@ TEST(Rasterize, InconsistentScenesAreRejected) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::rasterize_test

@@ -27,8 +27,6 @@ namespace clpv::shade_test {
 // Scenes of known light for the tests of shading: a floor, suns, bulbs, and shadow maps that are
 // ray-cast, texel centre by texel centre.
 
-namespace {
-
 using reference::MappedLight;
 using reference::ShadowMap;
 using std::numbers::pi;
@@ -383,7 +381,5 @@ TEST(Shade, RejectsMapsThatDoNotFit) {
   shadowed.depths.clear();
   EXPECT_THROW(shader.light(camera, {shadowed}), Error);
 }
-
-}  // namespace
 
 }  // namespace clpv::shade_test

@@ -12,8 +12,6 @@
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::texture_test {
-namespace {
-
 Texture texture(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) {
   Texture made;
   made.width = width;
@@ -141,5 +139,4 @@ TEST(Texture, SmallTexelsAreAveragedByMipLevels) {
     EXPECT_NEAR(colour.x, 0.5, 0.003);
 }
 
-}  // namespace
 }  // namespace clpv::texture_test

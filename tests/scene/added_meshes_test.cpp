@@ -16,8 +16,6 @@
 #include "tests/support/scenes.hpp"
 
 namespace clpv::added_meshes_test {
-namespace {
-
 using ::testing::HasSubstr;
 using Positions = std::vector<std::array<float, 3>>;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
@@ -214,5 +212,4 @@ TEST(AddedMeshes, BadArraysAreRejectedByNameAndIndex) {
   EXPECT_EQ(room.image(), Room(wall_at(-2)).image()) << "unchanged after errors";
 }
 
-}  // namespace
 }  // namespace clpv::added_meshes_test

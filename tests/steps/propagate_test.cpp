@@ -17,8 +17,6 @@
 
 namespace clpv::propagate_test {
 
-namespace {
-
 reference::Volume one_source(const Basis& basis, int n, const std::vector<double>& c,
                              glm::ivec3 at) {
   reference::Volume volume(n, basis.size());
@@ -236,5 +234,4 @@ TEST(Transmittance, LinksTransmitTheShareOfPointsThatSeeBothEnds) {
   EXPECT_EQ(seen_share(wall, {-1, 0, 0}, 0), 1) << "from outside the grid";
 }
 
-}  // namespace
 }  // namespace clpv::propagate_test

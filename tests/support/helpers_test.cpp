@@ -20,8 +20,6 @@
 #include "verify/schedule.hpp"
 
 namespace clpv::helpers_test {
-namespace {
-
 namespace fs = std::filesystem;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
@@ -203,5 +201,4 @@ TEST(Check, ListsAndSelects) {
   EXPECT_THAT(none.err, HasSubstr("--match srbf99"));
 }
 
-}  // namespace
 }  // namespace clpv::helpers_test

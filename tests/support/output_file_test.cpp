@@ -18,8 +18,6 @@
 #include "tests/support/run_program.hpp"
 
 namespace clpv::output_file_test {
-namespace {
-
 namespace fs = std::filesystem;
 
 struct OutputFile : ::testing::Test {
@@ -181,5 +179,4 @@ TEST(ProgressLine, NothingIsDrawnWhereStderrIsNoTerminal) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-}  // namespace
 }  // namespace clpv::output_file_test

@@ -25,8 +25,6 @@
 
 namespace clpv::support_test {
 
-namespace {
-
 TEST(Version, HasAnEntryInTheCitationAndTheChanges) {
   const std::string source = CLPV_SOURCE_DIR;
   EXPECT_THAT(test::read_file(source + "/CITATION.cff"),
@@ -211,5 +209,4 @@ TEST(ParseNumber, IsDecimalAndFinite) {
   EXPECT_FALSE(parse_number<unsigned>("-1"));
 }
 
-}  // namespace
 }  // namespace clpv::support_test

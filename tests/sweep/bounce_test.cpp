@@ -23,8 +23,6 @@
 #include "verify/check.hpp"
 
 namespace clpv::bounce_test {
-namespace {
-
 using namespace test;
 
 constexpr double kExact = 1e-12;
@@ -209,5 +207,4 @@ TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::bounce_test

@@ -20,8 +20,6 @@
 #include "verify/check.hpp"
 
 namespace clpv::sweep_test {
-namespace {
-
 using namespace test;
 using reference::SweptCascade;
 
@@ -398,5 +396,4 @@ TEST(Sweep, IsNoMatterOfSteps) {
   EXPECT_THROW(Propagator(test_session(), *basis, swept_by(*basis), {.grid = 4}), Error);
 }
 
-}  // namespace
 }  // namespace clpv::sweep_test

@@ -14,8 +14,6 @@
 
 namespace clpv::programs_test {
 
-namespace {
-
 namespace fs = std::filesystem;
 using test::kSmallSteps;
 using test::kTiny;
@@ -207,5 +205,4 @@ TEST_F(Drawing, AReportRejectsWithItsOwnExitCode) {
   EXPECT_EQ(test::read_file(file("page/index.html")), "<html>mine</html>");
 }
 
-}  // namespace
 }  // namespace clpv::programs_test

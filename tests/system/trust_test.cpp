@@ -25,8 +25,6 @@
 #include "tests/support/scenes.hpp"
 
 namespace clpv::trust_test {
-namespace {
-
 namespace fs = std::filesystem;
 using nlohmann::json;
 using test::kSmallSteps;
@@ -285,5 +283,4 @@ TEST(Outputs, MetadataHoldsNoFolderUserOrHost) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::trust_test

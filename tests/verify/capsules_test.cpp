@@ -13,8 +13,6 @@
 #include "tests/support/run_program.hpp"
 
 namespace clpv::capsules_test {
-namespace {
-
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -239,5 +237,4 @@ TEST(Capsules, OnlyComparisonsThatExistAreNamed) {
   EXPECT_FALSE(fs::exists(folder / "b"));
 }
 
-}  // namespace
 }  // namespace clpv::capsules_test

@@ -14,8 +14,6 @@
 #include "volume/accumulator.hpp"
 
 namespace clpv::volume_test {
-namespace {
-
 using test::test_session;
 
 constexpr float kHalf = 1.0f / 2048;  // half a unit in the last place of 11 bits below 1
@@ -113,5 +111,4 @@ TEST(Accumulator, UsesTheReportedMemory) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::volume_test

@@ -18,8 +18,6 @@
 
 namespace clpv::voxels_test {
 
-namespace {
-
 using namespace test;
 
 constexpr int kGrid = 9;  // as in `clpv check`: the same programs
@@ -367,5 +365,4 @@ TEST(VoxelField, FollowMovingObjects) {
   }
 }
 
-}  // namespace
 }  // namespace clpv::voxels_test
