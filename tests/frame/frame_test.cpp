@@ -204,9 +204,9 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
   ASSERT_THAT(message, ::testing::HasSubstr("grid: found 64, and at most "));
   const int fits =
       std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
-  EXPECT_GT(fits, 8);
-  EXPECT_LT(fits, 64);
+  EXPECT_TRUE(fits > 8 && fits < 64) << fits;
   options.grid = 512;
+  if (device.max_alloc_bytes >> 32 == 0) GTEST_SKIP() << "a buffer of the device has below 4 GiB";
   EXPECT_THAT(
       test::error_of(
           ExitCode::device,
